@@ -1,8 +1,10 @@
 // The audit log for administrators: who changed what, and when, by name and day.
 
 import * as api from "../core/api.js";
-import { byId, h } from "../core/dom.js";
+import { closeDialog, showDialog } from "../core/dialogs.js";
+import { h } from "../core/dom.js";
 import { dateAndTime } from "../core/format.js";
+import { html, render } from "../templates.js";
 
 /** @import { AuditEntry } from "../core/types.d.ts" */
 
@@ -31,98 +33,86 @@ export function queryOf({ name, from, to }, before) {
 /** @param {AuditEntry} entry */
 function row(entry) {
   const { time, name, role, address, method, path, status, request_id } = entry;
-  return h(
-    "tr",
-    { title: `Request ${request_id}` },
-    h("td", {}, h("time", { dateTime: time, title: time }, dateAndTime(time))),
-    [name || "\u2013", role, address].map((text) => h("td", {}, text)),
-    h("td", {}, h("code", {}, `${method} ${path}`)),
-    h("td", { className: "num" }, String(status)),
-  );
+  return html`<tr title="Request ${request_id}">
+    <td><time datetime=${time} title=${time}>${dateAndTime(time)}</time></td>
+    <td>${name || "\u2013"}</td>
+    <td>${role}</td>
+    <td>${address}</td>
+    <td><code>${method} ${path}</code></td>
+    <td class="num">${status}</td>
+  </tr>`;
 }
 
 /**
  * @param {string} label
  * @param {string} type
  */
-const input = (label, type) =>
-  h("input", { type, id: `audit-${label.toLowerCase()}`, autocomplete: "off" });
-
-/** @param {HTMLInputElement} control @param {string} label */
-const field = (control, label) =>
-  h("div", { className: "field" }, h("label", { for: control.id }, label), control);
+const field = (label, type) =>
+  html`<div class="field">
+    <label for="audit-${label.toLowerCase()}">${label}</label>
+    <input
+      type=${type}
+      id="audit-${label.toLowerCase()}"
+      name=${label.toLowerCase()}
+      autocomplete="off"
+    />
+  </div>`;
 
 /** Open the dialog with the newest changes. */
 export function openAuditLog() {
-  const dialog = byId("dialog");
-  const [name, from, to] = [input("Name", "text"), input("From", "date"), input("To", "date")];
-  const body = h("tbody");
-  const note = h("p", { className: "dim", role: "status" });
-  const more = h("button", { type: "button", hidden: true }, "Older changes");
+  const form = h("form", { method: "dialog", className: "audit-log", noValidate: true });
+  /** @type {AuditEntry[]} */
+  let entries = [];
+  let more = false; // whether older ones follow
+  let note = "";
   let asked = 0;
-  let last = 0; // id of the last entry on display
   /** @param {number} [before] */
   const load = async (before) => {
     asked += 1;
     const request = asked;
-    const wanted = { name: name.value, from: from.value, to: to.value };
+    const wanted = /** @type {any} */ (Object.fromEntries(new FormData(form)));
     try {
       const found = await api.audit.list(queryOf(wanted, before));
       if (request !== asked) return;
-      if (!before) body.replaceChildren();
-      body.append(...found.map(row));
-      last = found.at(-1)?.id ?? last;
-      more.hidden = found.length < ENTRIES_OF_A_PAGE;
-      note.textContent = body.children.length ? "" : "Nobody has changed anything of that kind.";
+      entries = before ? [...entries, ...found] : found;
+      more = found.length === ENTRIES_OF_A_PAGE;
+      note = entries.length ? "" : "Nobody has changed anything of that kind.";
     } catch (error) {
-      if (request === asked) note.textContent = `The log could not be read: ${error.message}`;
+      if (request === asked) note = `The log could not be read: ${error.message}`;
     }
+    draw();
   };
-  more.onclick = () => load(last);
-  const table = h(
-    "table",
-    {},
-    h(
-      "thead",
-      {},
-      h(
-        "tr",
-        {},
-        HEADS.map((text) => h("th", { scope: "col" }, text)),
-      ),
-    ),
-    body,
-  );
-  const form = h(
-    "form",
-    { method: "dialog", className: "audit-log", noValidate: true },
-    h("h2", { id: "dialog-title" }, "Audit log"),
-    h(
-      "div",
-      { className: "audit-filter" },
-      field(name, "Name"),
-      field(from, "From"),
-      field(to, "To"),
-    ),
-    h(
-      "div",
-      { className: "table-scroll", tabIndex: 0, role: "region", "aria-label": "Changes" },
-      table,
-    ),
-    note,
-    h(
-      "div",
-      { className: "dialog-actions" },
-      more,
-      h("span", { className: "spacer" }),
-      h("button", { type: "button", onclick: () => dialog.close() }, "Close"),
-    ),
-  );
+  const draw = () =>
+    render(
+      html`<h2 id="dialog-title">Audit log</h2>
+        <div class="audit-filter">
+          ${field("Name", "text")}${field("From", "date")}${field("To", "date")}
+        </div>
+        <div class="table-scroll" tabindex="0" role="region" aria-label="Changes">
+          <table>
+            <thead>
+              <tr>
+                ${HEADS.map((text) => html`<th scope="col">${text}</th>`)}
+              </tr>
+            </thead>
+            <tbody>
+              ${entries.map(row)}
+            </tbody>
+          </table>
+        </div>
+        <p class="dim" role="status">${note}</p>
+        <div class="dialog-actions">
+          <button type="button" ?hidden=${!more} @click=${() => load(entries.at(-1)?.id)}>
+            Older changes
+          </button>
+          <span class="spacer"></span>
+          <button type="button" @click=${closeDialog}>Close</button>
+        </div>`,
+      form,
+    );
   form.onchange = () => load();
   form.onsubmit = (event) => event.preventDefault(); // Enter in a field triggers its change event.
-  dialog.replaceChildren(form);
-  dialog.setAttribute("aria-labelledby", "dialog-title");
-  dialog.onclose = null;
-  dialog.showModal();
+  draw();
+  showDialog(form);
   load();
 }

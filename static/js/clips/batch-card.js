@@ -1,8 +1,9 @@
 // The card above the clips while several wait: how many are done, which one runs, the time left.
 
 import { tabStore } from "../core/browser-store.js";
-import { byId, h } from "../core/dom.js";
+import { byId } from "../core/dom.js";
 import { about, plural } from "../core/format.js";
+import { html, nothing, render } from "../templates.js";
 import { follow, queueOf, secondsLeft } from "./batch.js";
 import { BUSY } from "./busy.js";
 
@@ -49,22 +50,19 @@ export function drawBatch({ clips, jobs, loaded }) {
   batch = follow(batch === undefined ? kept() : batch, clips, jobs, performance.now());
   tabStore.write(KEY, batch?.members ?? null);
   box.hidden = !batch || batch.members.length < 2;
-  if (!batch || box.hidden) return box.replaceChildren();
+  if (!batch || box.hidden) return render(nothing, box);
   const { total, done, title, now } = wordsOf(batch, clips, jobs);
-  if (!box.firstChild)
-    box.replaceChildren(
-      h("b", { role: "status" }),
-      h("progress", { "aria-label": "Progress of all clips" }),
-      h("span", { className: "dim" }),
-    );
-  box.querySelector("b").textContent = title;
-  box.querySelector("span").textContent = now;
   const { frames, left } = batch;
-  Object.assign(box.querySelector("progress"), {
-    max: frames + left || total,
-    value: frames || done,
-  });
-  return undefined;
+  return render(
+    html`<b role="status">${title}</b>
+      <progress
+        aria-label="Progress of all clips"
+        max=${frames + left || total}
+        value=${frames || done}
+      ></progress>
+      <span class="dim">${now}</span>`,
+    box,
+  );
 }
 
 /**

@@ -1,10 +1,11 @@
 // The list of clips in the library: each with its picture, its progress and its buttons.
 
 import * as api from "../core/api.js";
-import { byId, h, iconButton, reconcile, WRITES } from "../core/dom.js";
+import { byId } from "../core/dom.js";
 import { state } from "../core/state.js";
 import { attempt } from "../core/toasts.js";
 import { recordAction, showDone } from "../core/undo.js";
+import { guard, html, iconButtonOf, ifDefined, nothing, render, repeat } from "../templates.js";
 import { queueOf } from "./batch.js";
 import { BUSY } from "./busy.js";
 import { countAll, forget, isListed, loadOlder, searchClips } from "./clip-pages.js";
@@ -46,122 +47,68 @@ async function retry(clip) {
   await reloadClip(clip.id);
 }
 
+/**
+ * The buttons of a clip, each with its name: another button must not take the place of one that is
+ * being pressed.
+ *
+ * @param {Clip} clip
+ * @returns {{ label: string, run: () => unknown, icon?: string }[]}
+ */
+function buttonsOf(clip) {
+  const { name } = clip;
+  const cancel = () => attempt("Cancelling", () => api.jobs.cancel(clip.job_id));
+  if (BUSY.has(clip.status)) return [{ label: `Cancel ${name}`, run: cancel, icon: "close" }];
+  const again = needsTopic(clip)
+    ? [{ label: `Choose the topic of ${name}`, run: () => openTopics(clip) }]
+    : clip.status === "done"
+      ? []
+      : [{ label: `Retry ${name}`, run: () => retry(clip), icon: "retry" }];
+  return [...again, { label: `Delete ${name}`, run: () => remove(clip), icon: "trash" }];
+}
+
+/** @param {ReturnType<typeof buttonsOf>[number]} button */
+const button = ({ label, run, icon }) =>
+  icon
+    ? iconButtonOf(icon, label, run, { writes: true })
+    : html`<button type="button" class="choose-topic" data-writes aria-label=${label} @click=${run}>
+        Choose…
+      </button>`;
+
+/**
+ * @param {Clip} clip
+ * @param {Job | undefined} job
+ */
+const progress = ({ name }, job) =>
+  html`<progress
+    aria-label="Poses of ${name}"
+    max=${ifDefined(job?.total || undefined)}
+    value=${ifDefined(job?.total ? job.done : undefined)}
+  ></progress>`;
+
 /** @param {Clip} clip */
-function buttons(clip) {
-  if (BUSY.has(clip.status))
-    return [
-      iconButton(
-        "close",
-        `Cancel ${clip.name}`,
-        () => attempt("Cancelling", () => api.jobs.cancel(clip.job_id)),
-        WRITES,
-      ),
-    ];
-  const choose = needsTopic(clip)
-    ? h(
-        "button",
-        {
-          type: "button",
-          className: "choose-topic",
-          ...WRITES,
-          "aria-label": `Choose the topic of ${clip.name}`,
-          onclick: () => openTopics(clip),
-        },
-        "Choose\u2026",
-      )
-    : null;
-  const again =
-    clip.status === "done" || choose
-      ? null
-      : iconButton("retry", `Retry ${clip.name}`, () => retry(clip), WRITES);
-  return [choose, again, iconButton("trash", `Delete ${clip.name}`, () => remove(clip), WRITES)];
-}
-
-/**
- * The value of a progress bar, if it is known.
- *
- * @param {Job} [job]
- */
-const lengthOf = (job) => (job?.total ? { max: job.total, value: job.done } : {});
-
-/**
- * Move the progress on in place.
- *
- * @param {HTMLElement} element
- * @param {Clip} clip
- * @param {Job} [job]
- */
-function advance(element, clip, job) {
-  /** @type {HTMLElement} */ (element.querySelector(".stage-text")).textContent = statusText(
-    clip,
-    job,
-  );
-  const bar = element.querySelector("progress");
-  if (bar) Object.assign(bar, lengthOf(job));
-}
-
-/**
- * Replace an element's content; the button of the same name keeps the focus.
- *
- * @param {HTMLElement} element
- * @param {...(string | Node)} content
- */
-function replaceKeepingFocus(element, ...content) {
-  const { activeElement } = document;
-  const name = element.contains(activeElement) ? activeElement?.getAttribute("aria-label") : null;
-  element.replaceChildren(...content);
-  if (!name) return;
-  const named = /** @type {HTMLElement[]} */ ([...element.querySelectorAll("[aria-label]")]);
-  named.find((each) => each.getAttribute("aria-label") === name)?.focus();
-}
-
-/**
- * @param {Clip} clip
- * @param {HTMLElement} [element]
- */
-function draw(clip, element) {
+function item(clip) {
+  const { id, name, width, height, status } = clip;
   const job = state.jobs.get(clip.job_id);
-  const busy = BUSY.has(clip.status);
-  const chosen = clip.id === state.clip;
-  const signature = JSON.stringify([clip, job, chosen, statusText(clip, job)]);
-  if (element?.dataset.signature === signature) return element;
-  // Progress comes ten times a second: a button must not be replaced under the pointer.
-  const shape = JSON.stringify([clip, chosen, hasPoster(clip)]);
-  if (busy && element?.dataset.shape === shape) {
-    element.dataset.signature = signature;
-    advance(element, clip, job);
-    return element;
-  }
-  const drawn = element ?? h("li");
-  drawn.dataset.signature = signature;
-  drawn.dataset.shape = shape;
-  drawn.className = `clip ${needsTopic(clip) ? "waiting" : clip.status}${chosen ? " chosen" : ""}`;
-  replaceKeepingFocus(
-    drawn,
-    h(
-      "button",
-      {
-        type: "button",
-        className: "clip-open",
-        title: `${clip.name}, ${clip.width} \u00d7 ${clip.height} pixels`,
-        "aria-pressed": String(chosen),
-        onclick: () => select(clip.id),
-      },
-      posterOf(clip, element?.querySelector(".poster:not(.blank)")),
-      h(
-        "span",
-        { className: "clip-text" },
-        h("span", { className: "visually-hidden" }, "Show "),
-        h("b", {}, clip.name),
-        h("span", { className: "stage-text" }, statusText(clip, job)),
-        clip.status === "running"
-          ? h("progress", { "aria-label": `Poses of ${clip.name}`, ...lengthOf(job) })
-          : null,
-      ),
-    ),
-    h("div", { className: "clip-buttons" }, buttons(clip)),
-  );
-  return drawn;
+  const chosen = id === state.clip;
+  const stage = needsTopic(clip) ? "waiting" : status;
+  const poster = guard([hasPoster(clip), api.clips.poster(clip)], () => posterOf(clip));
+  return html`<li class="clip ${stage} ${chosen ? "chosen" : ""}">
+    <button
+      type="button"
+      class="clip-open"
+      title="${name}, ${width} × ${height} pixels"
+      aria-pressed=${chosen}
+      @click=${() => select(id)}
+    >
+      ${poster}<span class="clip-text"
+        ><span class="visually-hidden">Show </span><b>${name}</b
+        ><span class="stage-text">${statusText(clip, job)}</span>${
+          status === "running" ? progress(clip, job) : nothing
+        }</span
+      >
+    </button>
+    <div class="clip-buttons">${repeat(buttonsOf(clip), ({ label }) => label, button)}</div>
+  </li>`;
 }
 
 /** @param {State} state */
@@ -178,7 +125,10 @@ export function drawClips(state) {
   // Those that are worked on come first, in the order of the work.
   const worked = [...shown.filter(({ status }) => status === "running"), ...queueOf(shown)];
   const inOrder = [...worked, ...shown.filter(({ status }) => !BUSY.has(status))];
-  reconcile(list, inOrder, (clip) => clip.id, draw);
+  render(
+    repeat(inOrder, ({ id }) => id, item),
+    list,
+  );
   drawMore(state, wanted);
   byId("no-clip").textContent =
     clips.length && !shown.length && searched.text === wanted

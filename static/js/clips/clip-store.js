@@ -141,22 +141,17 @@ export function hasPoster(clip) {
 }
 
 /**
- * The picture of a clip, or a grey box. Once made it is kept, since progress redraws the rest
- * often.
+ * The picture of a clip, or a grey box.
  *
  * @param {Clip} clip
- * @param {Element | null} [known] the one drawn before
  */
-export function posterOf(clip, known) {
+export function posterOf(clip) {
   const place = api.clips.poster(clip);
-  // Another address than later, because a browser keeps pictures for an hour.
-  const early = `${place}?waiting`;
-  if ([place, early].includes(known?.getAttribute("src") ?? ""))
-    return /** @type {Element} */ (known);
   if (!hasPoster(clip)) return h("div", { className: "poster blank" });
   const poster = h("img", {
     className: "poster",
-    src: clip.status === "queued" ? early : place,
+    // Another address than later, because a browser keeps pictures for an hour.
+    src: clip.status === "queued" ? `${place}?waiting` : place,
     alt: "",
     loading: "lazy",
     width: 64,

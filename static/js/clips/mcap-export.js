@@ -6,11 +6,12 @@ import { percent, timeLeft } from "../core/format.js";
 import { follow, state } from "../core/state.js";
 import { toast } from "../core/toasts.js";
 import { uniqueId } from "../core/unique-id.js";
+import { html, ifDefined, render } from "../templates.js";
 
 /** @import { ExportProgress } from "../core/types.d.ts" */
 
-/** @type {Map<string, HTMLElement>} */
-const running = new Map(); // elements, by the name of their export
+/** @type {Map<string, (progress: ExportProgress) => void>} */
+const running = new Map(); // what draws the progress, by the name of the export
 /** @type {Map<string, HTMLElement>} */
 const elements = new Map(); // by clip; kept when the explanation is drawn anew
 
@@ -42,33 +43,40 @@ export function saveFile({ name, content }) {
 /**
  * @param {HTMLElement} box
  * @param {string} clip
- * @param {HTMLElement | null} problem
+ * @param {string} problem
  */
 function drawStart(box, clip, problem) {
-  const button = h(
-    "button",
-    { type: "button", className: "link", onclick: () => run(box, clip) },
-    problem ? "Try the session again" : "Session as MCAP",
-  );
   // If the explanation was drawn anew in the meantime, Cancel has lost the focus.
   const focused = document.activeElement;
   const had = box.contains(focused) || (box.isConnected && focused === document.body);
-  box.replaceChildren(button, problem ?? h("small", { className: "dim" }, " opens in Foxglove"));
-  if (had) button.focus({ preventScroll: true });
+  const note = problem
+    ? html`<small class="session-problem" role="alert">${problem}</small>`
+    : html`<small class="dim"> opens in Foxglove</small>`;
+  render(
+    html`<button type="button" class="link" @click=${() => run(box, clip)}>
+        ${problem ? "Try the session again" : "Session as MCAP"}</button
+      >${note}`,
+    box,
+  );
+  if (had) box.querySelector("button")?.focus({ preventScroll: true });
 }
 
 /**
  * @param {HTMLElement} box
  * @param {ExportProgress | null} progress
+ * @param {() => void} cancel
  */
-function advance(box, progress) {
-  const bar = box.querySelector("progress");
-  const words = box.querySelector("[role=status]");
-  if (!bar || !words) return;
-  words.textContent = exportWords(progress);
-  if (progress?.total) Object.assign(bar, { max: progress.total, value: progress.done });
-  else bar.removeAttribute("value");
-}
+const advance = (box, progress, cancel) =>
+  render(
+    html`<span role="status">${exportWords(progress)}</span>
+      <progress
+        aria-label="Progress of the session"
+        max=${ifDefined(progress?.total || undefined)}
+        value=${ifDefined(progress?.total ? progress.done : undefined)}
+      ></progress>
+      <button type="button" aria-label="Cancel the session" @click=${cancel}>Cancel</button>`,
+    box,
+  );
 
 /**
  * Write the session, and let the browser save it while it downloads: it may not fit in memory.
@@ -79,28 +87,19 @@ function advance(box, progress) {
 async function run(box, clip) {
   const leaving = new AbortController();
   const name = uniqueId();
-  running.set(name, box);
-  const cancel = h("button", { type: "button", onclick: () => leaving.abort() }, "Cancel");
-  cancel.setAttribute("aria-label", "Cancel the session");
-  box.replaceChildren(
-    h("span", { role: "status" }),
-    h("progress", { "aria-label": "Progress of the session" }),
-    cancel,
-  );
-  cancel.focus();
-  advance(box, null);
-  let problem = null;
+  /** @param {ExportProgress | null} progress */
+  const draw = (progress) => advance(box, progress, () => leaving.abort());
+  running.set(name, draw);
+  draw(null);
+  box.querySelector("button")?.focus();
+  let problem = "";
   try {
     const written = await api.clips.writeSession(clip, name, leaving.signal);
     h("a", { href: api.clips.session(clip, name), download: written.name }).click();
   } catch (error) {
     if (leaving.signal.aborted) toast("The session is cancelled", "Nothing was downloaded.");
     else
-      problem = h(
-        "small",
-        { className: "session-problem", role: "alert" },
-        `The session could not be downloaded: ${error.message} Nothing is lost: try it again.`,
-      );
+      problem = `The session could not be downloaded: ${error.message} Nothing is lost: try it again.`;
   } finally {
     running.delete(name);
   }
@@ -117,12 +116,11 @@ export function mcapExport(clip) {
   if (known) return known;
   const box = h("span", { className: "mcap-export" });
   elements.set(clip, box);
-  drawStart(box, clip, null);
+  drawStart(box, clip, "");
   return box;
 }
 
 follow(["exporting"], () => {
   const { exporting } = state;
-  const box = exporting && running.get(exporting.id);
-  if (box) advance(box, exporting);
+  if (exporting) running.get(exporting.id)?.(exporting);
 });

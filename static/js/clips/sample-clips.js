@@ -1,8 +1,9 @@
 // The sample clips, each a button that adds it to the library.
 
 import * as api from "../core/api.js";
-import { byId, h, icon, WRITES } from "../core/dom.js";
+import { byId } from "../core/dom.js";
 import { attempt } from "../core/toasts.js";
+import { html, iconOf, nothing, render } from "../templates.js";
 import { loadClip } from "./clip-pages.js";
 import { select } from "./clip-store.js";
 
@@ -32,26 +33,21 @@ export async function addSampleClip(sample, button) {
 }
 
 /**
- * Make the list of sample clips, each a button that adds it.
+ * The list of sample clips, each a button that adds it.
  *
  * @param {Sample[]} samples
  */
-export function samplesList(samples) {
-  return h(
-    "ul",
-    { className: "samples" },
-    samples.map((sample) => {
-      const button = h(
-        "button",
-        { type: "button", ...WRITES },
-        icon("plus"),
-        readable(sample.name),
-      );
-      button.onclick = () => addSampleClip(sample, button);
-      return h("li", {}, button);
-    }),
-  );
-}
+export const samplesList = (samples) =>
+  html`<ul class="samples">
+    ${samples.map((sample) => {
+      const add = (/** @type {any} */ { currentTarget }) => addSampleClip(sample, currentTarget);
+      return html`<li>
+        <button type="button" data-writes @click=${add}>
+          ${iconOf("plus")}${readable(sample.name)}
+        </button>
+      </li>`;
+    })}
+  </ul>`;
 
 /**
  * Offer the sample clips in the library, folded away.
@@ -59,9 +55,9 @@ export function samplesList(samples) {
  * @param {State} state
  */
 export function drawSampleClips({ samples }) {
-  byId("samples").replaceChildren(
-    ...(samples.length
-      ? [h("details", {}, h("summary", {}, "Sample clips"), samplesList(samples))]
-      : []),
-  );
+  const list = html`<details>
+    <summary>Sample clips</summary>
+    ${samplesList(samples)}
+  </details>`;
+  render(samples.length ? list : nothing, byId("samples"));
 }

@@ -1,8 +1,10 @@
 // The dialog that chooses the topic of a dive recording.
 
 import * as api from "../core/api.js";
-import { byId, h } from "../core/dom.js";
+import { closeDialog, showDialog } from "../core/dialogs.js";
+import { byId } from "../core/dom.js";
 import { duration, plural } from "../core/format.js";
+import { elementOf, html } from "../templates.js";
 
 /** @import { Clip, Topic } from "../core/types.d.ts" */
 
@@ -17,23 +19,13 @@ function choice(topic, chosen) {
   const facts = [topic.type.replace("/msg/", "/"), `${topic.width} \u00d7 ${topic.height}`].join(
     "  \u00b7  ",
   );
-  return h(
-    "label",
-    { className: "topic-choice" },
-    h("input", { type: "radio", name: "topic", value: topic.name, checked: chosen }),
-    h(
-      "span",
-      {},
-      h("b", {}, topic.name),
-      h("span", {}, USES[topic.use]),
-      h("span", { className: "dim" }, facts),
-    ),
-    h(
-      "small",
-      { className: "dim num" },
-      `${duration(topic.duration)}, ${plural(topic.messages, "message")}`,
-    ),
-  );
+  return html`<label class="topic-choice">
+    <input type="radio" name="topic" value=${topic.name} .checked=${chosen} />
+    <span
+      ><b>${topic.name}</b><span>${USES[topic.use]}</span><span class="dim">${facts}</span></span
+    >
+    <small class="dim num">${duration(topic.duration)}, ${plural(topic.messages, "message")}</small>
+  </label>`;
 }
 
 /**
@@ -42,16 +34,12 @@ function choice(topic, chosen) {
  * @param {Clip} clip
  */
 export const topicsPanel = (clip) =>
-  h(
-    "div",
-    { className: "welcome-progress topics-panel" },
-    h("h1", {}, `This recording holds ${plural(clip.topics.length, "topic")}`),
-    h("p", { className: "dim" }, "One of them becomes the clip: the one that shows the diver."),
-    h(
-      "button",
-      { type: "button", className: "primary", onclick: () => openTopics(clip) },
-      "Choose a topic",
-    ),
+  elementOf(
+    html`<div class="welcome-progress topics-panel">
+      <h1>This recording holds ${plural(clip.topics.length, "topic")}</h1>
+      <p class="dim">One of them becomes the clip: the one that shows the diver.</p>
+      <button type="button" class="primary" @click=${() => openTopics(clip)}>Choose a topic</button>
+    </div>`,
   );
 
 /**
@@ -60,46 +48,40 @@ export const topicsPanel = (clip) =>
  * @param {Clip} clip
  */
 export function openTopics(clip) {
-  const dialog = byId("dialog");
-  if (dialog.open) return; // its card asks again
-  const problem = h("p", { className: "field-problem", role: "alert", hidden: true });
-  const confirm = h("button", { type: "submit", className: "primary" }, "Find poses");
-  const form = h(
-    "form",
-    { method: "dialog", className: "topics-dialog" },
-    h("h2", { id: "dialog-title" }, "Choose a topic"),
-    h(
-      "p",
-      { className: "dim" },
-      `${clip.name} holds ${plural(clip.topics.length, "topic")} that can become a clip. Choose the one that shows the diver.`,
-    ),
-    h(
-      "div",
-      { role: "radiogroup", "aria-label": "Topic", className: "topic-choices" },
-      clip.topics.map((topic, index) => choice(topic, index === 0)),
-    ),
-    problem,
-    h(
-      "div",
-      { className: "dialog-actions" },
-      h("button", { type: "button", onclick: () => dialog.close() }, "Later"),
-      confirm,
-    ),
-  );
-  form.onsubmit = async (event) => {
+  if (byId("dialog").open) return; // its card asks again
+  /** @param {SubmitEvent & { target: any }} event */
+  const choose = async (event) => {
     event.preventDefault();
+    const { target: form, submitter } = event;
+    const confirm = /** @type {HTMLButtonElement} */ (submitter);
     confirm.disabled = true;
     try {
       await api.clips.chooseTopic(clip.id, String(new FormData(form).get("topic")));
-      dialog.close();
+      closeDialog();
     } catch (error) {
+      const problem = form.querySelector(".field-problem");
       problem.textContent = error.message;
       problem.hidden = false;
       confirm.disabled = false;
     }
   };
-  dialog.replaceChildren(form);
-  dialog.setAttribute("aria-labelledby", "dialog-title");
-  dialog.onclose = null;
-  dialog.showModal();
+  showDialog(
+    elementOf(
+      html`<form method="dialog" class="topics-dialog" @submit=${choose}>
+        <h2 id="dialog-title">Choose a topic</h2>
+        <p class="dim">
+          ${clip.name} holds ${plural(clip.topics.length, "topic")} that can become a clip. Choose
+          the one that shows the diver.
+        </p>
+        <div role="radiogroup" aria-label="Topic" class="topic-choices">
+          ${clip.topics.map((topic, index) => choice(topic, index === 0))}
+        </div>
+        <p class="field-problem" role="alert" hidden></p>
+        <div class="dialog-actions">
+          <button type="button" @click=${closeDialog}>Later</button>
+          <button type="submit" class="primary">Find poses</button>
+        </div>
+      </form>`,
+    ),
+  );
 }

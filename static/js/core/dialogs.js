@@ -1,7 +1,7 @@
 // A modal dialog with a form; it stays open and shows the error until its task succeeds.
 
+import { html, limited, nothing, render } from "../templates.js";
 import { byId, h } from "./dom.js";
-import { limit } from "./text-limit.js";
 
 /** @import { Field } from "./types.d.ts" */
 
@@ -40,90 +40,75 @@ export function ask({
   submit,
   preview = null,
 }) {
-  const problem = h("p", { className: "field-problem", role: "alert", hidden: true });
-  const confirm = h("button", { type: "submit", className: "primary" }, action);
-  const inputs = fields.map((field) => inputOf(field));
+  const form = h("form", { method: "dialog", noValidate: true });
+  const inputOf = (/** @type {Field} */ { name }) => byId(`field-${name}`);
+  const textOf = (/** @type {Field} */ field) => inputOf(field).value.trim();
   return new Promise((resolve) => {
     /** @type {any} */
     let answer = null;
-    const form = h(
-      "form",
-      { method: "dialog", noValidate: true },
-      h("h2", { id: "dialog-title" }, title),
-      text ? h("p", { className: "dim" }, text) : null,
-      preview,
-      fields.map((field, index) => rowOf(field, inputs[index])),
-      problem,
-      h(
-        "div",
-        { className: "dialog-actions" },
-        h("button", { type: "button", onclick: closeDialog }, refusal),
-        confirm,
-      ),
-    );
     form.onsubmit = async (event) => {
       event.preventDefault();
-      const empty = fields.findIndex(
-        (field, index) => field.required && !inputs[index].value.trim(),
-      );
-      if (empty >= 0)
-        return showProblem(`${fields[empty].label} is empty; type one.`, inputs[empty]);
-      confirm.disabled = true;
+      const empty = fields.find((field) => field.required && !textOf(field));
+      if (empty) return refuse(`${empty.label} is empty; type one.`, empty);
+      draw("", true);
       try {
         answer = await submit(
-          Object.fromEntries(
-            fields.map((field, index) => [field.name, inputs[index].value.trim()]),
-          ),
+          Object.fromEntries(fields.map((field) => [field.name, textOf(field)])),
         );
         closeDialog();
       } catch (error) {
         if (error.code === "cancelled") return closeDialog();
-        showProblem(error.message, inputs[0]);
-      } finally {
-        confirm.disabled = false;
+        refuse(error.message, fields[0]);
       }
+      return undefined;
     };
-    /** @type {(message: string, input?: HTMLElement) => void} */
-    const showProblem = (message, input) => {
-      problem.textContent = message;
-      problem.hidden = false;
-      input?.focus();
+    /** @type {(problem: string, field?: Field) => void} */
+    const refuse = (problem, field) => {
+      draw(problem);
+      if (field) inputOf(field).focus();
     };
+    const draw = (problem = "", busy = false) =>
+      render(
+        html`<h2 id="dialog-title">${title}</h2>
+          ${text ? html`<p class="dim">${text}</p>` : nothing}${preview}${fields.map(row)}
+          <p class="field-problem" role="alert" ?hidden=${!problem}>${problem}</p>
+          <div class="dialog-actions">
+            <button type="button" @click=${closeDialog}>${refusal}</button>
+            <button type="submit" class="primary" ?disabled=${busy}>${action}</button>
+          </div>`,
+        form,
+      );
+    draw();
     showDialog(form, () => resolve(answer));
-    inputs[0]?.select?.();
+    if (fields.length) inputOf(fields[0]).select();
   });
 }
 
 /** @param {Field} field */
-function inputOf(field) {
-  const properties = {
-    id: `field-${field.name}`,
-    name: field.name,
-    value: field.value ?? "",
-    autocomplete: "off",
-    required: Boolean(field.required),
-  };
-  const input = field.multiline
-    ? h("textarea", { ...properties, rows: 2 })
-    : h("input", { ...properties, type: "text" });
-  return limit(input, field.most ?? 2000);
-}
-
-/**
- * @param {Field} field
- * @param {HTMLElement} input
- */
-function rowOf(field, input) {
-  return h(
-    "div",
-    { className: "field" },
-    h(
-      "label",
-      { for: input.id },
-      field.label,
-      field.required ? null : h("span", { className: "dim" }, " (optional)"),
-    ),
-    input,
-    field.hint ? h("p", { className: "dim" }, field.hint) : null,
-  );
+function row({ name, label, value = "", required = false, hint, multiline, most = 2000 }) {
+  const id = `field-${name}`;
+  const input = multiline
+    ? html`<textarea
+        id=${id}
+        name=${name}
+        rows="2"
+        autocomplete="off"
+        ?required=${required}
+        .defaultValue=${value}
+        ${limited(most)}
+      ></textarea>`
+    : html`<input
+        type="text"
+        id=${id}
+        name=${name}
+        autocomplete="off"
+        ?required=${required}
+        .defaultValue=${value}
+        ${limited(most)}
+      />`;
+  return html`<div class="field">
+    <label for=${id}
+      >${label}${required ? nothing : html`<span class="dim"> (optional)</span>`}</label
+    >${input}${hint ? html`<p class="dim">${hint}</p>` : nothing}
+  </div>`;
 }

@@ -94,29 +94,6 @@ export function icon(name) {
   );
 }
 
-/**
- * Make a small button that shows only an icon.
- *
- * @param {string} name
- * @param {string} label
- * @param {() => unknown} onclick
- * @param {Record<string, string>} [more] attributes, such as `WRITES`
- */
-export function iconButton(name, label, onclick, more = {}) {
-  return h(
-    "button",
-    {
-      type: "button",
-      className: "quiet icon",
-      title: label,
-      "aria-label": label,
-      onclick,
-      ...more,
-    },
-    icon(name),
-  );
-}
-
 /** @param {HTMLElement} list */
 const elementsIn = (list) => /** @type {HTMLElement[]} */ ([...list.children]);
 

@@ -1,39 +1,34 @@
 // The dialog that lists all keys; `?` opens it.
 
-import { byId, h } from "./dom.js";
+import { elementOf, html, render } from "../templates.js";
+import { closeDialog, showDialog } from "./dialogs.js";
+import { byId } from "./dom.js";
 import { bind, bindings } from "./key-bindings.js";
 
 /** @import { KeyListActions } from "./types.d.ts" */
 
 /** @param {string} combination */
-const keyCaps = (combination) => combination.split("+").map((key) => h("kbd", {}, key));
+const keyCaps = (combination) => combination.split("+").map((key) => html`<kbd>${key}</kbd>`);
 
-/**
- * Draw the keys that are bound by now, grouped.
- *
- * @param {HTMLElement} list
- */
-function drawKeys(list) {
-  const groups = [...new Set(bindings().map((each) => each.group))];
-  list.replaceChildren(
-    ...groups.map((group) =>
-      h(
-        "section",
-        {},
-        h("h3", {}, group),
-        h(
-          "dl",
-          {},
-          bindings()
+/** The keys that are bound by now, grouped. */
+const keys = () =>
+  [...new Set(bindings().map((each) => each.group))].map(
+    (group) =>
+      html`<section>
+        <h3>${group}</h3>
+        <dl>
+          ${bindings()
             .filter((each) => each.group === group)
-            .map((each) =>
-              h("div", {}, h("dt", {}, keyCaps(each.keys[0])), h("dd", {}, each.text)),
-            ),
-        ),
-      ),
-    ),
+            .map(
+              (each) =>
+                html`<div>
+                  <dt>${keyCaps(each.keys[0])}</dt>
+                  <dd>${each.text}</dd>
+                </div>`,
+            )}
+        </dl>
+      </section>`,
   );
-}
 
 /**
  * Show all keys: first those bound so far, then those of views that have yet to be loaded.
@@ -41,52 +36,29 @@ function drawKeys(list) {
  * @param {KeyListActions} actions
  */
 function showKeys({ loadAll, startTour, showExample }) {
-  const dialog = byId("dialog");
-  const list = h("div", { className: "key-groups" });
-  drawKeys(list);
-  loadAll().then(() => drawKeys(list));
-  dialog.replaceChildren(
-    h(
-      "div",
-      { className: "key-list" },
-      h("h2", { id: "dialog-title" }, "Keys"),
-      list,
-      h(
-        "div",
-        { className: "dialog-actions" },
-        h(
-          "button",
-          {
-            type: "button",
-            onclick: () => {
-              dialog.close();
-              startTour();
-            },
-          },
-          "Tour",
-        ),
-        h(
-          "button",
-          {
-            type: "button",
-            onclick: () => {
-              dialog.close();
-              showExample();
-            },
-          },
-          "Example",
-        ),
-        h(
-          "button",
-          { type: "button", className: "primary", autofocus: true, onclick: () => dialog.close() },
-          "Close",
-        ),
-      ),
-    ),
+  /** @type {(text: string, run: () => void) => unknown} */
+  const button = (text, run) => {
+    const leave = () => {
+      closeDialog();
+      run();
+    };
+    return html`<button type="button" @click=${leave}>${text}</button>`;
+  };
+  const content = elementOf(
+    html`<div class="key-list">
+      <h2 id="dialog-title">Keys</h2>
+      <div class="key-groups"></div>
+      <div class="dialog-actions">
+        ${button("Tour", startTour)}${button("Example", showExample)}
+        <button type="button" class="primary" autofocus @click=${closeDialog}>Close</button>
+      </div>
+    </div>`,
   );
-  dialog.setAttribute("aria-labelledby", "dialog-title");
-  dialog.onclose = null;
-  dialog.showModal();
+  const list = /** @type {HTMLElement} */ (content.querySelector(".key-groups"));
+  const draw = () => render(keys(), list);
+  draw();
+  loadAll().then(draw);
+  showDialog(content);
 }
 
 /**

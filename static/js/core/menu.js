@@ -1,6 +1,6 @@
 // A menu: a button that opens a short list of commands.
 
-import { h, icon, WRITES } from "./dom.js";
+import { elementOf, html, iconOf } from "../templates.js";
 
 /** @import { MenuItem } from "./types.d.ts" */
 
@@ -30,31 +30,24 @@ addEventListener("click", (event) => {
  */
 export function menu(label, items) {
   /** @param {MenuItem} item */
-  const entry = ({ text, run, href, writes }) =>
-    href
-      ? h("a", { href, download: "", onclick: () => close() }, text)
-      : h(
-          "button",
-          {
-            type: "button",
-            ...(writes ? WRITES : {}),
-            onclick: () => {
-              close(true);
-              run?.();
-            },
-          },
-          text,
-        );
-  const list = h("div", { className: "menu-list" }, items.map(entry));
-  const element = h(
-    "details",
-    { className: "menu" },
-    h(
-      "summary",
-      { className: "button quiet icon", "aria-label": label, title: label },
-      icon("more"),
-    ),
-    list,
+  const entry = ({ text, run, href, writes }) => {
+    const choose = () => {
+      close(!href);
+      run?.();
+    };
+    return href
+      ? html`<a href=${href} download @click=${choose}>${text}</a>`
+      : html`<button type="button" ?data-writes=${writes} @click=${choose}>${text}</button>`;
+  };
+  const element = /** @type {HTMLDetailsElement} */ (
+    elementOf(
+      html`<details class="menu">
+        <summary class="button quiet icon" aria-label=${label} title=${label}>
+          ${iconOf("more")}
+        </summary>
+        <div class="menu-list">${items.map(entry)}</div>
+      </details>`,
+    )
   );
   element.ontoggle = () => {
     if (element.open) {
@@ -70,7 +63,7 @@ export function menu(label, items) {
     const step = { ArrowDown: 1, ArrowUp: -1 }[event.key];
     if (!step || !element.open) return;
     event.preventDefault();
-    const entries = /** @type {HTMLElement[]} */ ([...list.querySelectorAll(":enabled, a")]);
+    const entries = /** @type {HTMLElement[]} */ ([...element.querySelectorAll(":enabled, a")]);
     const at = entries.findIndex((each) => each === document.activeElement);
     entries[(at + step + entries.length) % entries.length].focus();
   };

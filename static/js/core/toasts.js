@@ -1,6 +1,7 @@
 // Toasts: short messages with what happened, why, and what to do next.
 
-import { byId, h, iconButton } from "./dom.js";
+import { elementOf, html, iconButtonOf, nothing } from "../templates.js";
+import { byId } from "./dom.js";
 
 /** @type {Record<string, number>} */
 const SHOWN_FOR = { info: 6000, error: 15000 };
@@ -37,25 +38,16 @@ export function toast(title, detail = "", { kind = "info", action = null } = {})
   const box = byId("toasts");
   for (const other of [...box.children]) if (other.dataset.text === title + detail) other.remove();
   const close = () => element.remove();
-  /** @type {HTMLElement} */
-  const element = h(
-    "div",
-    { className: `toast ${kind}`, role: kind === "error" ? "alert" : "status" },
-    h("div", {}, h("b", {}, title), detail ? h("p", {}, detail) : null),
-    action
-      ? h(
-          "button",
-          {
-            type: "button",
-            onclick: () => {
-              close();
-              action.run();
-            },
-          },
-          action.label,
-        )
-      : null,
-    iconButton("close", "Dismiss", close),
+  const act = () => {
+    close();
+    action?.run();
+  };
+  const element = elementOf(
+    html`<div class="toast ${kind}" role=${kind === "error" ? "alert" : "status"}>
+      <div><b>${title}</b>${detail ? html`<p>${detail}</p>` : nothing}</div>
+      ${action ? html`<button type="button" @click=${act}>${action.label}</button>` : nothing}
+      ${iconButtonOf("close", "Dismiss", close)}
+    </div>`,
   );
   element.dataset.text = title + detail;
   box.append(element);

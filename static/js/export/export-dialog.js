@@ -2,12 +2,14 @@
 
 import * as api from "../core/api.js";
 import { copy } from "../core/clipboard.js";
+import { closeDialog, showDialog } from "../core/dialogs.js";
 import { byId, h } from "../core/dom.js";
 import { bytes, plural, readable } from "../core/format.js";
 import { state } from "../core/state.js";
 import { attempt, toast } from "../core/toasts.js";
 import { go } from "../core/views.js";
 import { tuningWords } from "../languages/language-tuning.js";
+import { html, nothing, render, until } from "../templates.js";
 
 /** @import { ExportContents, ExportedFile, Language, State, HealthReport } from "../core/types.d.ts" */
 
@@ -56,19 +58,17 @@ const fileName = (name, { suffix = ".json" }) =>
  */
 function choice({ format, bytes: size }, chosen, choose) {
   const { title, text } = FORMATS[format];
-  return h(
-    "label",
-    { className: "export-choice" },
-    h("input", {
-      type: "radio",
-      name: "format",
-      value: format,
-      checked: chosen,
-      onchange: () => choose(format),
-    }),
-    h("span", {}, h("b", {}, title), h("span", { className: "dim" }, text)),
-    h("small", { className: "dim num" }, bytes(size)),
-  );
+  return html`<label class="export-choice">
+    <input
+      type="radio"
+      name="format"
+      value=${format}
+      .checked=${chosen}
+      @change=${() => choose(format)}
+    />
+    <span><b>${title}</b><span class="dim">${text}</span></span>
+    <small class="dim num">${bytes(size)}</small>
+  </label>`;
 }
 
 /**
@@ -76,61 +76,54 @@ function choice({ format, bytes: size }, chosen, choose) {
  * @param {string} value
  * @param {string} [note]
  */
-const row = (term, value, note) =>
+const row = (term, value, note = "") =>
   value.length
-    ? [h("dt", {}, term), h("dd", {}, value, note ? h("small", { className: "dim" }, note) : null)]
-    : [];
+    ? html`<dt>${term}</dt>
+        <dd>${value}${note && html`<small class="dim">${note}</small>`}</dd>`
+    : nothing;
 
 /**
  * @param {ExportContents} contents
  * @param {Language} language
  */
-function facts(contents, language) {
-  const rows = [
-    row("Keypoints", listed(contents.salient), "keypoints that must be seen for recognition"),
-    row("Better with", listed(contents.limbs)),
-    row("Torso", listed(contents.torso), "takes out distance and drift"),
-    row(
-      "Models",
-      contents.models.join(", "),
-      "osg-studio models export DIR copies them for a robot without a network",
-    ),
-    row("Takes", language.trigger_words, "as the robot finds them too"),
-    row("Recognised", tuningWords(language), "as kept after a trial; the robot does the same"),
-    row("Schema", `${contents.schema_format}, version ${contents.schema_version}`),
-    row(
-      "Without command",
-      contents.without_command.join(", "),
-      "the robot receives the label only",
-    ),
-  ];
-  const summary = h("summary", {}, "What the robot needs");
-  return h("details", {}, summary, h("dl", { className: "export-facts" }, ...rows));
-}
-
-/** @param {() => string} text */
-function commandLine(text) {
-  const button = h(
-    "button",
-    { type: "button", onclick: () => copy(text(), "Command copied") },
-    "Copy",
-  );
-  return { button, code: h("code", { id: "export-command" }, text()) };
-}
+const facts = (contents, language) =>
+  html`<details>
+    <summary>What the robot needs</summary>
+    <dl class="export-facts">
+      ${row(
+        "Keypoints",
+        listed(contents.salient),
+        "keypoints that must be seen for recognition",
+      )}${row("Better with", listed(contents.limbs))}${row(
+        "Torso",
+        listed(contents.torso),
+        "takes out distance and drift",
+      )}${row(
+        "Models",
+        contents.models.join(", "),
+        "osg-studio models export DIR copies them for a robot without a network",
+      )}${row("Takes", language.trigger_words, "as the robot finds them too")}${row(
+        "Recognised",
+        tuningWords(language),
+        "as kept after a trial; the robot does the same",
+      )}${row("Schema", `${contents.schema_format}, version ${contents.schema_version}`)}${row(
+        "Without command",
+        contents.without_command.join(", "),
+        "the robot receives the label only",
+      )}
+    </dl>
+  </details>`;
 
 /**
  * @param {Language} language
  * @param {"pdf" | "svg"} format
  */
 const slateLink = ({ id, name }, format) =>
-  h(
-    "a",
-    {
-      href: api.languages.slate(id, format),
-      download: fileName(name, { suffix: `.${format}` }),
-    },
-    format.toUpperCase(),
-  );
+  html`<a
+    href=${api.languages.slate(id, format)}
+    download=${fileName(name, { suffix: `.${format}` })}
+    >${format.toUpperCase()}</a
+  >`;
 
 /**
  * The printable page for divers, as files.
@@ -138,15 +131,10 @@ const slateLink = ({ id, name }, format) =>
  * @param {Language} language
  */
 const slateLinks = (language) =>
-  h(
-    "p",
-    { className: "export-slate" },
-    h("b", {}, "Slate for divers: "),
-    "strokes, meanings and the salute on one page, as ",
-    slateLink(language, "pdf"),
-    " or ",
-    slateLink(language, "svg"),
-  );
+  html`<p class="export-slate">
+    <b>Slate for divers: </b>strokes, meanings and the salute on one page, as
+    ${slateLink(language, "pdf")} or ${slateLink(language, "svg")}
+  </p>`;
 
 /**
  * What the health check says of the language, as the view Health does.
@@ -154,23 +142,21 @@ const slateLinks = (language) =>
  * @param {Language} language
  */
 function healthLine({ id, revision }) {
-  const words = h("span", {}, "Health is being checked\u2026");
   const see = () => {
-    byId("dialog").close();
+    closeDialog();
     go("health");
   };
-  const link = h("button", { type: "button", className: "link", onclick: see }, "See health");
-  const line = h("p", { className: "export-health", role: "status" }, words, " ", link);
-  api.languages.check(id, revision).then(
-    (/** @type {HealthReport} */ { verdict }) => {
-      line.classList.toggle("unwell", !verdict.ready);
-      words.textContent = `Health: ${verdict.words}.`;
-    },
-    () => {
-      words.textContent = "Health could not be checked.";
-    },
+  /** @type {(words: string, bad?: boolean) => unknown} */
+  const line = (words, bad = false) =>
+    html`<p class="export-health ${bad ? "unwell" : ""}" role="status">
+      <span>${words}</span>
+      <button type="button" class="link" @click=${see}>See health</button>
+    </p>`;
+  const checked = api.languages.check(id, revision).then(
+    (/** @type {HealthReport} */ { verdict }) => line(`Health: ${verdict.words}.`, !verdict.ready),
+    () => line("Health could not be checked."),
   );
-  return line;
+  return until(checked, line("Health is being checked\u2026"));
 }
 
 /** Show the contents of the export. */
@@ -186,54 +172,41 @@ export async function openExport() {
     api.languages.exportContents(language.id),
   );
   if (!contents) return;
-  const dialog = byId("dialog");
-  let format = contents.files[0].format;
-  const name = () => fileName(contents.name, FORMATS[format]);
-  const command = () => FORMATS[format].command(name());
-  const { button, code } = commandLine(command);
-  const download = h("a", { className: "button primary" }, "Download");
-  const show = () => {
-    download.download = name();
-    download.href = api.languages.exportUrl(language.id, format);
-    code.textContent = command();
+  const box = h("div", { className: "export-dialog" });
+  const line = healthLine(language);
+  const about = `${contents.name}, revision ${contents.revision}, code ${language.code}, ${plural(language.gestures.length, "gesture")}`;
+  /** @param {ExportedFile["format"]} format */
+  const draw = (format) => {
+    const name = fileName(contents.name, FORMATS[format]);
+    const command = FORMATS[format].command(name);
+    render(
+      html`<h2 id="dialog-title">Export</h2>
+        <p class="dim">${about}</p>
+        ${line}
+        <div role="radiogroup" aria-label="Format" class="export-choices">
+          ${contents.files.map((file) => choice(file, file.format === format, draw))}
+        </div>
+        ${facts(contents, language)}
+        <div class="export-command">
+          <code id="export-command">${command}</code>
+          <button type="button" @click=${() => copy(command, "Command copied")}>Copy</button>
+        </div>
+        ${slateLinks(language)}
+        <div class="dialog-actions">
+          <button type="button" @click=${closeDialog}>Close</button>
+          <a
+            class="button primary"
+            download=${name}
+            href=${api.languages.exportUrl(language.id, format)}
+            @click=${closeDialog}
+            >Download</a
+          >
+        </div>`,
+      box,
+    );
   };
-  /** @param {ExportedFile["format"]} chosen */
-  const choose = (chosen) => {
-    format = chosen;
-    show();
-  };
-  show();
-  download.onclick = () => dialog.close();
-  dialog.replaceChildren(
-    h(
-      "div",
-      { className: "export-dialog" },
-      h("h2", { id: "dialog-title" }, "Export"),
-      h(
-        "p",
-        { className: "dim" },
-        `${contents.name}, revision ${contents.revision}, code ${language.code}, ${plural(language.gestures.length, "gesture")}`,
-      ),
-      healthLine(language),
-      h(
-        "div",
-        { role: "radiogroup", "aria-label": "Format", className: "export-choices" },
-        contents.files.map((file, index) => choice(file, index === 0, choose)),
-      ),
-      facts(contents, language),
-      h("div", { className: "export-command" }, code, button),
-      slateLinks(language),
-      h(
-        "div",
-        { className: "dialog-actions" },
-        h("button", { type: "button", onclick: () => dialog.close() }, "Close"),
-        download,
-      ),
-    ),
-  );
-  dialog.setAttribute("aria-labelledby", "dialog-title");
-  dialog.onclose = null;
-  dialog.showModal();
+  draw(contents.files[0].format);
+  showDialog(box);
 }
 
 /** Bind the button in the header. */

@@ -208,7 +208,8 @@ function rangesOf(clip, takes) {
  * @param {string} clip
  */
 async function chooseClip(dialog, clip) {
-  dialog.clip = clip;
+  // Until its own are loaded, no range of another clip can be added.
+  Object.assign(dialog, { clip, ranges: [] });
   const found = clip
     ? await attempt("Loading the takes", () => api.clips.takes(clip, takesLanguage(state.gestures)))
     : [];
@@ -252,6 +253,10 @@ async function add(event) {
  */
 function addForm(dialog, clips) {
   const { clip, ranges, range, adding, older } = dialog;
+  const pickClip = (/** @type {any} */ { target }) => {
+    chooseClip(dialog, target.value);
+    draw();
+  };
   const pickRange = (/** @type {any} */ { target }) => {
     dialog.range = Number(target.value);
   };
@@ -259,10 +264,7 @@ function addForm(dialog, clips) {
     <h3>Another demonstration, best by another diver</h3>
     <div class="field">
       <label for="demonstration-clip">Clip</label>
-      <select
-        id="demonstration-clip"
-        @change=${(/** @type {any} */ { target }) => chooseClip(dialog, target.value)}
-      >
+      <select id="demonstration-clip" @change=${pickClip}>
         ${optionsOf(
           clips.map(({ id, name }) => [id, name]),
           clip,
@@ -283,7 +285,9 @@ function addForm(dialog, clips) {
       <label for="demonstration-diver">Diver</label>
       <input type="text" id="demonstration-diver" autocomplete="off" ${limited(MAX_DIVER_LENGTH)} />
     </div>
-    <button type="submit" class="primary" data-writes ?disabled=${adding}>Add</button>
+    <button type="submit" class="primary" data-writes ?disabled=${adding || !ranges.length}>
+      Add
+    </button>
   </form>`;
 }
 

@@ -16,7 +16,8 @@ import { edit } from "./revision-edit.js";
 
 /** @typedef {(change: Partial<Chosen>) => void} Put */
 
-const FACTORS = [0, 0.25, 0.5, 1, 2, 4];
+/** The factors of a voter's weight that can be chosen. */
+export const FACTORS = [0, 0.25, 0.5, 1, 2, 4];
 
 /** @type {Record<Language["profile"], string>} */
 const PROFILE_WORDS = {

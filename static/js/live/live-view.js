@@ -23,6 +23,7 @@ import { bind } from "../core/key-bindings.js";
 import { follow, state, update } from "../core/state.js";
 import { toast } from "../core/toasts.js";
 import { go } from "../core/views.js";
+import { render } from "../templates.js";
 import { addFiles } from "../upload/upload-list.js";
 import { panel } from "./live-layout.js";
 import { addResult, clearResults, showNothingRecognised } from "./live-results.js";
@@ -329,7 +330,7 @@ bind({
  * @param {HTMLElement} section
  */
 export function open(section) {
-  section.append(...panel());
+  render(panel(), section);
   clearResults(FIRST);
   wire();
   follow(["clips", "clip", "source"], drawClipChoice);

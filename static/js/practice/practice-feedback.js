@@ -1,7 +1,7 @@
 // The feedback to a diver about the last take.
 
-import { h } from "../core/dom.js";
 import { askWhich } from "../core/format.js";
+import { html } from "../templates.js";
 
 /** @import { PracticeAnswer } from "../core/types.d.ts" */
 
@@ -17,13 +17,8 @@ export function feedback({ take, sentence, notes }) {
     asked: take.pair ? `? ${askWhich(take.pair)} ` : "",
     wrong: "\u2260 Not yet: ",
   };
-  return [
-    h(
-      "p",
-      { className: `practice-${look}` },
-      h("b", {}, heads[look]),
-      take.right ? take.expected : sentence,
-    ),
-    ...notes.map((text) => h("p", { className: "dim" }, text)),
-  ].filter((each) => each !== null);
+  return html`<p class="practice-${look}">
+      <b>${heads[look]}</b>${take.right ? take.expected : sentence}
+    </p>
+    ${notes.map((text) => html`<p class="dim">${text}</p>`)}`;
 }

@@ -1,9 +1,9 @@
 // The records of practice: the evidence that each diver's takes give, and the takes themselves.
 
-import { h, iconButton, WRITES } from "../core/dom.js";
 import { askWhich, percent, plural } from "../core/format.js";
 import { state } from "../core/state.js";
 import { address, go, here } from "../core/views.js";
+import { html, iconButtonOf, nothing } from "../templates.js";
 
 /** @import { PracticeRecord, PracticeTake } from "../core/types.d.ts" */
 
@@ -32,41 +32,37 @@ const placeOf = ({ clip_id: clip, recognition_id: recognition }) => ({
   frame: null,
 });
 
+/** @param {PracticeTake} take */
+function readAs({ right, pair, label }) {
+  if (right) return " recognised";
+  return pair ? ` asked back: ${askWhich(pair)}` : ` read as ${label ?? "nothing"}`;
+}
+
 /**
  * @param {PracticeTake} take
  * @param {Remove} remove
  */
 function takeRow(take, remove) {
+  const { right, pair, expected, revision, added_by: by } = take;
   const clip = state.clips.find(({ id }) => id === take.clip_id);
   const place = placeOf(take);
-  return h(
-    "li",
-    { className: take.right ? "right" : take.pair ? "asked" : "wrong" },
-    h("span", { "aria-hidden": "true" }, take.right ? "\u2713" : take.pair ? "?" : "\u2260"),
-    h(
-      "span",
-      {},
-      h("b", {}, take.expected),
-      take.right
-        ? " recognised"
-        : take.pair
-          ? ` asked back: ${askWhich(take.pair)}`
-          : ` read as ${take.label ?? "nothing"}`,
-      h(
-        "small",
-        { className: "dim" },
-        ` revision ${take.revision}${take.added_by ? `, added by ${take.added_by}` : ""}`,
-      ),
-    ),
-    clip
-      ? h(
-          "a",
-          { href: address("studio", place), onclick: here(() => go("studio", place)) },
-          clip.name,
-        )
-      : h("span", { className: "dim" }, "its clip was deleted"),
-    iconButton("close", `Remove this take of ${take.expected}`, () => remove(take), WRITES),
-  );
+  return html`<li class=${right ? "right" : pair ? "asked" : "wrong"}>
+    <span aria-hidden="true">${right ? "\u2713" : pair ? "?" : "\u2260"}</span>
+    <span
+      ><b>${expected}</b>${readAs(take)}<small class="dim">
+        revision ${revision}${by ? `, added by ${by}` : ""}</small
+      ></span
+    >
+    ${
+      clip
+        ? html`<a href=${address("studio", place)} @click=${here(() => go("studio", place))}
+            >${clip.name}</a
+          >`
+        : html`<span class="dim">its clip was deleted</span>`
+    }${iconButtonOf("close", `Remove this take of ${expected}`, () => remove(take), {
+      writes: true,
+    })}
+  </li>`;
 }
 
 /**
@@ -74,40 +70,26 @@ function takeRow(take, remove) {
  * @param {Remove} remove
  */
 export function recordCard(record, remove) {
-  const needed = record.takes + record.more;
-  return h(
-    "section",
-    { className: `practice-record${record.reached ? " reached" : ""}`, "aria-label": record.diver },
-    h("h3", {}, record.diver, record.reached ? " \u2713" : ""),
-    h("p", {}, evidenceOf(record)),
-    h("progress", {
-      "aria-label": `Takes of ${record.diver}`,
-      max: Math.max(1, needed),
-      value: record.takes,
-    }),
-    record.pairs
-      ? h(
-          "p",
-          { className: "dim" },
-          `${plural(record.pairs, "take")} asked back with the right gesture: neither right nor an error.`,
-        )
-      : null,
-    record.older
-      ? h(
-          "p",
-          { className: "dim" },
-          `${plural(record.older, "take")} with older revisions of the language do not count.`,
-        )
-      : null,
-    h(
-      "details",
-      {},
-      h("summary", {}, plural(record.shown.length, "take")),
-      h(
-        "ul",
-        { className: "practice-takes" },
-        record.shown.map((take) => takeRow(take, remove)),
-      ),
-    ),
-  );
+  const { diver, reached, takes, more, pairs, older, shown } = record;
+  const note = (/** @type {number} */ count, /** @type {string} */ words) =>
+    count ? html`<p class="dim">${plural(count, "take")} ${words}</p>` : nothing;
+  return html`<section class="practice-record ${reached ? "reached" : ""}" aria-label=${diver}>
+    <h3>${diver}${reached ? " \u2713" : ""}</h3>
+    <p>${evidenceOf(record)}</p>
+    <progress
+      aria-label="Takes of ${diver}"
+      max=${Math.max(1, takes + more)}
+      value=${takes}
+    ></progress>
+    ${note(pairs, "asked back with the right gesture: neither right nor an error.")}${note(
+      older,
+      "with older revisions of the language do not count.",
+    )}
+    <details>
+      <summary>${plural(shown.length, "take")}</summary>
+      <ul class="practice-takes">
+        ${shown.map((take) => takeRow(take, remove))}
+      </ul>
+    </details>
+  </section>`;
 }

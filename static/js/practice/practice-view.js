@@ -11,6 +11,7 @@ import { h, WRITES } from "../core/dom.js";
 import { follow, state } from "../core/state.js";
 import { limit } from "../core/text-limit.js";
 import { attempt, complain } from "../core/toasts.js";
+import { elementOf, html, nothing, render } from "../templates.js";
 import { addFiles, takeFilesIn } from "../upload/upload-list.js";
 import { practiceCamera } from "./practice-camera.js";
 import { feedback } from "./practice-feedback.js";
@@ -128,11 +129,10 @@ export function open(section) {
   let offered = "";
 
   /** @param {PracticeRecord[] | null} all */
-  const drawRecords = (all) =>
-    records.replaceChildren(
-      ...(all ?? []).map((each) => recordCard(each, remove)),
-      ...(all?.length ? [] : [h("p", { className: "dim" }, "Nobody has practised yet.")]),
-    );
+  const drawRecords = (all) => {
+    const none = html`<p class="dim">Nobody has practised yet.</p>`;
+    render(all?.length ? all.map((each) => recordCard(each, remove)) : none, records);
+  };
 
   async function load() {
     const { language } = state;
@@ -204,7 +204,7 @@ export function open(section) {
   }
 
   /** @param {string} text */
-  const say = (text) => answer.replaceChildren(h("p", { className: "dim" }, text));
+  const say = (text) => render(html`<p class="dim">${text}</p>`, answer);
 
   /**
    * Recognise an attempt, and show the feedback.
@@ -222,11 +222,11 @@ export function open(section) {
         clip_id: id,
         ...range,
       });
-      answer.replaceChildren(...feedback(found));
+      render(feedback(found), answer);
       answer.scrollIntoView({ block: "nearest" });
       await load();
     } catch (error) {
-      answer.replaceChildren();
+      render(nothing, answer);
       complain(error, "Recognition");
     }
   }
@@ -271,29 +271,21 @@ export function open(section) {
    * @param {HTMLElement} input
    */
   const field = (label, input) =>
-    h("div", { className: "field" }, h("label", { for: input.id }, label), input);
+    elementOf(html`<div class="field"><label for=${input.id}>${label}</label>${input}</div>`);
   const clipField = field("Clip", clip);
   clipField.append(olderClipsButton());
-  const form = h(
-    "form",
-    { className: "practice-form" },
-    picture,
-    h(
-      "div",
-      { className: "practice-fields" },
-      field("Diver", diver),
-      field("Gesture to show", gesture),
-      h(
-        "div",
-        { className: "segments", role: "group", "aria-label": "Shown by" },
-        byCamera,
-        byClip,
-      ),
-      clipField,
-      h("div", { className: "practice-actions" }, show),
-      note,
-    ),
-    camera.element,
+  const form = elementOf(
+    html`<form class="practice-form">
+      ${picture}
+      <div class="practice-fields">
+        ${field("Diver", diver)}${field("Gesture to show", gesture)}
+        <div class="segments" role="group" aria-label="Shown by">${byCamera}${byClip}</div>
+        ${clipField}
+        <div class="practice-actions">${show}</div>
+        ${note}
+      </div>
+      ${camera.element}
+    </form>`,
   );
   form.onsubmit = async (event) => {
     event.preventDefault();
@@ -302,21 +294,18 @@ export function open(section) {
     await recognise(attempted(), clip.value, null);
     draw();
   };
-  section.append(
-    h(
-      "div",
-      { className: "practice-page" },
-      h("h1", {}, "Practice"),
-      h(
-        "p",
-        { className: "dim" },
-        "Show a gesture, and read what to change. The record says when a diver\u2019s error rate is proved to be low enough for a dive.",
-      ),
-      form,
-      answer,
-      h("h2", {}, "Records"),
-      records,
-    ),
+  render(
+    html`<div class="practice-page">
+      <h1>Practice</h1>
+      <p class="dim">
+        Show a gesture, and read what to change. The record says when a diver’s error rate is proved
+        to be low enough for a dive.
+      </p>
+      ${form}${answer}
+      <h2>Records</h2>
+      ${records}
+    </div>`,
+    section,
   );
   takeFilesIn("practice", (files) => addFiles(files));
   follow(["gestures", "clips"], draw);

@@ -1,17 +1,16 @@
 // The alignment of the take with two gestures: their paths, and which moments correspond.
 
-import { h, svg } from "../core/dom.js";
+import { h, svg as svgElement } from "../core/dom.js";
 import { moment, readable } from "../core/format.js";
 import { nearestFrame } from "../clips/frame-times.js";
 import { state, update } from "../core/state.js";
+import { html, nothing, optionsOf, render, svg } from "../templates.js";
 import { chooseJoint, partsOf, roleOf, sum } from "./alignment-parts.js";
 import { seek } from "./playback.js";
 
 /** @import { Alignment, Explanation, Piece, Place, State } from "../core/types.d.ts" */
 
 /** @typedef {{ left: number, top: number, width: number, height: number }} Box */
-
-/** @typedef {ReturnType<typeof partsOf>[number]} Part */
 
 const MARGIN = 0.12; // of the longer side, around all that moves
 const LETTERS = 0.075; // height of a number in the drawing, as a share of it
@@ -94,12 +93,12 @@ function drawnLinks({ pairs, query, gesture }, part, shares) {
   const most = Math.max(...shares) || 1;
   return pairs.map(([one, other], index) => {
     const amount = Math.sqrt(shares[index] / most);
-    return svg("path", {
-      class: "link",
-      d: between(query[one][part], gesture[other][part]),
-      "stroke-width": (0.5 + 3 * amount).toFixed(2),
-      "stroke-opacity": (0.25 + 0.75 * amount).toFixed(2),
-    });
+    return svg`<path
+      class="link"
+      d=${between(query[one][part], gesture[other][part])}
+      stroke-width=${(0.5 + 3 * amount).toFixed(2)}
+      stroke-opacity=${(0.25 + 0.75 * amount).toFixed(2)}
+    />`;
   });
 }
 
@@ -114,42 +113,33 @@ function drawnLinks({ pairs, query, gesture }, part, shares) {
 function worst({ pairs, query, gesture }, part, shares, box) {
   const index = shares.indexOf(Math.max(...shares));
   const [one, other] = [query[pairs[index][0]][part], gesture[pairs[index][1]][part]];
-  if (!one || !other || !shares[index]) return [];
+  if (!one || !other || !shares[index]) return nothing;
   const [x, y] = [(one[0] + other[0]) / 2, (one[1] + other[1]) / 2];
   const onTheRight = x > box.left + 0.6 * box.width;
   const size = LETTERS * Math.max(box.width, box.height);
-  return [
-    svg(
-      "text",
-      {
-        x: x + (onTheRight ? -size / 2 : size / 2),
-        y,
-        "font-size": size,
-        "text-anchor": onTheRight ? "end" : "start",
-      },
-      percent(shares[index]),
-    ),
-  ];
+  return svg`<text
+    x=${x + (onTheRight ? -size / 2 : size / 2)}
+    y=${y}
+    font-size=${size}
+    text-anchor=${onTheRight ? "end" : "start"}
+  >${percent(shares[index])}</text>`;
 }
 
 /**
  * Go to the moment of the take that is nearest to where the drawing was pressed.
  *
- * @param {SVGSVGElement} drawing
+ * @param {MouseEvent & { currentTarget: any }} event
  * @param {Alignment} alignment
  * @param {number} part
  */
-function seekByPress(drawing, { query, time }, part) {
-  drawing.onclick = (event) => {
-    const point = new DOMPoint(event.clientX, event.clientY).matrixTransform(
-      drawing.getScreenCTM()?.inverse(),
-    );
-    const far = query.map((step) =>
-      step[part] ? Math.hypot(step[part][0] - point.x, step[part][1] - point.y) : Infinity,
-    );
-    if (state.timeline)
-      seek(nearestFrame(state.timeline.time, time[far.indexOf(Math.min(...far))]));
-  };
+function seekByPress({ currentTarget, clientX, clientY }, { query, time }, part) {
+  const point = new DOMPoint(clientX, clientY).matrixTransform(
+    currentTarget.getScreenCTM()?.inverse(),
+  );
+  const far = query.map((step) =>
+    step[part] ? Math.hypot(step[part][0] - point.x, step[part][1] - point.y) : Infinity,
+  );
+  if (state.timeline) seek(nearestFrame(state.timeline.time, time[far.indexOf(Math.min(...far))]));
 }
 
 /**
@@ -171,7 +161,7 @@ function differing({ label, query, time, gesture, gesture_time: theirs }, part, 
     const within = steps.filter(
       (_, step) => piece && times[step] >= piece.start && times[step] <= piece.end,
     );
-    return svg("path", { class: "differs", d: line(within, part) });
+    return svg`<path class="differs" d=${line(within, part)} />`;
   });
 }
 
@@ -189,36 +179,40 @@ const asCompared = ({ mirrored, backward }) =>
  * @param {Box} box
  * @param {Explanation} why
  */
-function figure(alignment, part, box, why) {
+function drawn(alignment, part, box, why) {
   const { label, pairs, time, gesture_time: theirs, query, gesture, parts } = alignment;
   const shares = sharesOf(alignment, part);
   const role = roleOf(label, why);
   const kind = role === "expected" ? "expected" : "chosen";
   const most = shares.indexOf(Math.max(...shares));
   const [link, mine, other] = ["now-link", "now-mine", `now-${kind}`].map((name) =>
-    svg("path", { class: name, d: "" }),
+    svgElement("path", { class: name, d: "" }),
   );
-  const drawing = svg(
-    "svg",
-    {
-      class: "alignment",
-      viewBox: `${box.left} ${box.top} ${box.width} ${box.height}`,
-      role: "img",
-      "aria-label": `The ${readable(parts[part])} in this take and in ${label}. They differ most at ${moment(time[pairs[most][0]])}: ${percent(shares[most])} of all that differs`,
-    },
-    ...drawnLinks(alignment, part, shares),
-    svg("path", { class: `theirs ${kind}`, d: line(gesture, part) }),
-    svg("path", { class: "mine", d: line(query, part) }),
-    ...differing(alignment, part, why),
-    svg("path", { class: `begin ${kind}`, d: dot(gesture[0][part]) }),
-    svg("path", { class: "begin", d: dot(query[0][part]) }),
-    link,
-    other,
-    mine,
-    ...worst(alignment, part, shares, box),
-  );
-  seekByPress(drawing, alignment, part);
   const words = h("p", { className: "at dim" });
+  const about = `The ${readable(parts[part])} in this take and in ${label}. They differ most at ${moment(time[pairs[most][0]])}: ${percent(shares[most])} of all that differs`;
+  const figure = html`<figure>
+    <figcaption>
+      <i class=${kind}></i><b class=${kind} title=${label}>${label}</b
+      ><span class="dim">${[role, asCompared(alignment)].filter(Boolean).join(", ")}</span
+      ><span class="num">distance ${alignment.distance.toFixed(3)}</span>
+    </figcaption>
+    <svg
+      class="alignment"
+      viewBox="${box.left} ${box.top} ${box.width} ${box.height}"
+      role="img"
+      aria-label=${about}
+      @click=${(/** @type {any} */ event) => seekByPress(event, alignment, part)}
+    >
+      ${drawnLinks(alignment, part, shares)}
+      <path class="theirs ${kind}" d=${line(gesture, part)} />
+      <path class="mine" d=${line(query, part)} />
+      ${differing(alignment, part, why)}
+      <path class="begin ${kind}" d=${dot(gesture[0][part])} />
+      <path class="begin" d=${dot(query[0][part])} />
+      ${link}${other}${mine}${worst(alignment, part, shares, box)}
+    </svg>
+    ${words}
+  </figure>`;
   /** @param {number} seconds */
   const show = (seconds) => {
     const step = nearestFrame(time, seconds);
@@ -229,35 +223,7 @@ function figure(alignment, part, box, why) {
     other.setAttribute("d", they.map(dot).join(""));
     words.textContent = `${moment(time[step])} with ${moment(theirs[pairs[here[0]][1]])} of ${label}: ${percent(sum(here.map((index) => shares[index])))}`;
   };
-  const caption = h(
-    "figcaption",
-    {},
-    h("i", { className: kind }),
-    h("b", { className: kind, title: label }, label),
-    h("span", { className: "dim" }, [role, asCompared(alignment)].filter(Boolean).join(", ")),
-    h("span", { className: "num" }, `distance ${alignment.distance.toFixed(3)}`),
-  );
-  return { element: h("figure", {}, caption, drawing, words), show };
-}
-
-/**
- * @param {Part[]} parts
- * @param {Part} chosen
- */
-function joints(parts, chosen) {
-  const options = parts.map(({ name, share }) =>
-    h("option", { value: name }, `${readable(name)}, ${percent(share)}`),
-  );
-  const select = h(
-    "select",
-    {
-      "aria-label": "Joint whose paths are drawn",
-      onchange: () => update({ joint: select.value }),
-    },
-    options,
-  );
-  select.value = chosen.name;
-  return select;
+  return { figure, show };
 }
 
 /**
@@ -276,25 +242,23 @@ export function alignmentsOf(why) {
     const chosen = chooseJoint(parts, alignments, state.joint, shown);
     shown = chosen.name;
     const around = boxOf(alignments, chosen.part);
-    const figures = around ? alignments.map((each) => figure(each, chosen.part, around, why)) : [];
-    box.replaceChildren(
-      h(
-        "div",
-        { className: "alignments-head" },
-        h("h2", {}, "Which moments correspond"),
-        joints(parts, chosen),
-      ),
-      h(
-        "div",
-        { className: "figures" },
-        figures.map(({ element }) => element),
-      ),
-      h(
-        "p",
-        { className: "dim" },
-        h("i", { className: "mine" }),
-        "this take, from its dot on. The thicker the line between two moments, the more they differ; the number is their share of the distance.",
-      ),
+    const figures = around ? alignments.map((each) => drawn(each, chosen.part, around, why)) : [];
+    /** @type {[string, string][]} */
+    const options = parts.map(({ name, share }) => [name, `${readable(name)}, ${percent(share)}`]);
+    const pick = (/** @type {any} */ { target }) => update({ joint: target.value });
+    render(
+      html`<div class="alignments-head">
+          <h2>Which moments correspond</h2>
+          <select aria-label="Joint whose paths are drawn" @change=${pick}>
+            ${optionsOf(options, chosen.name)}
+          </select>
+        </div>
+        <div class="figures">${figures.map((each) => each.figure)}</div>
+        <p class="dim">
+          <i class="mine"></i>this take, from its dot on. The thicker the line between two moments,
+          the more they differ; the number is their share of the distance.
+        </p>`,
+      box,
     );
     follower = {
       joint: chosen.name,

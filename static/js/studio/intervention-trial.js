@@ -2,13 +2,13 @@
 // the language; the language itself is edited only when the intervention is kept.
 
 import * as api from "../core/api.js";
-import { h, WRITES } from "../core/dom.js";
 import { askWhich } from "../core/format.js";
 import { currentLanguage, state, update } from "../core/state.js";
 import { complain, toast } from "../core/toasts.js";
 import { showDone } from "../core/undo.js";
 import { keepTuning } from "../languages/language-tuning.js";
 import { edit } from "../languages/revision-edit.js";
+import { elementOf, html } from "../templates.js";
 import { rangeOf, recogniseWith } from "./studio-view.js";
 
 /** @import { Intervention, Recognition, Trial, Tuning } from "../core/types.d.ts" */
@@ -140,24 +140,13 @@ export function trialBar(trial, result) {
   const read = result.pair
     ? askWhich(result.pair)
     : `${result.label ?? `nothing; nearest is ${result.nearest}`}.`;
-  return h(
-    "div",
-    { className: "trial", role: "status" },
-    h(
-      "p",
-      {},
-      h("b", {}, "Trial: "),
-      `${trial.change.words}. Recognised as ${read} Not saved yet.`,
-    ),
-    h(
-      "span",
-      { className: "joined" },
-      h(
-        "button",
-        { type: "button", className: "primary", ...WRITES, onclick: () => keep(trial) },
-        "Keep",
-      ),
-      h("button", { type: "button", onclick: () => discard(trial) }, "Discard"),
-    ),
+  return elementOf(
+    html`<div class="trial" role="status">
+      <p><b>Trial: </b>${trial.change.words}. Recognised as ${read} Not saved yet.</p>
+      <span class="joined"
+        ><button type="button" class="primary" data-writes @click=${() => keep(trial)}>Keep</button
+        ><button type="button" @click=${() => discard(trial)}>Discard</button></span
+      >
+    </div>`,
   );
 }

@@ -4,13 +4,15 @@ import { demonstratedBy } from "../clips/demonstration-ranges.js";
 import { listWarnings, takesLanguage } from "../clips/salutes.js";
 import { reloadClip } from "../clips/clip-store.js";
 import * as api from "../core/api.js";
-import { byId, h, WRITES } from "../core/dom.js";
+import { closeDialog } from "../core/dialogs.js";
+import { byId } from "../core/dom.js";
 import { askWhich, percent } from "../core/format.js";
 import { isReadable, selectedClip, selectedRange, state, update } from "../core/state.js";
 import { attempt, complain, toast } from "../core/toasts.js";
 import { go } from "../core/views.js";
 import { newLanguage } from "../languages/language-store.js";
 import { expectation, expectedOf, NONE } from "../languages/test-set.js";
+import { elementOf, html, nothing, render } from "../templates.js";
 import { buildRanges } from "./labelled-ranges.js";
 import { frameShown, keepsFrame } from "./playback.js";
 import { supportOf } from "./vote-support.js";
@@ -107,18 +109,15 @@ async function hasLanguage() {
   if (!language) return Boolean(await newLanguage());
   if (!gestures?.sample || intoSample.has(language)) return true;
   let sample = false;
-  const choice = h(
-    "button",
-    {
-      type: "button",
-      className: "link",
-      onclick: () => {
-        sample = true;
-        intoSample.add(language);
-        byId("dialog").close();
-      },
-    },
-    `Save into the sample \u201c${gestures.name}\u201d instead`,
+  const save = () => {
+    sample = true;
+    intoSample.add(language);
+    closeDialog();
+  };
+  const choice = elementOf(
+    html`<button type="button" class="link" @click=${save}>
+      Save into the sample “${gestures.name}” instead
+    </button>`,
   );
   const made = await newLanguage({
     text: `\u201c${gestures.name}\u201d is a sample. Name a language of your own: the gesture is saved there.`,
@@ -229,17 +228,16 @@ const supportWords = (result) =>
 function outcomeWords(result) {
   const { label, pair, nearest, fault } = result;
   const expected = expectedOf(result);
+  const known = expected === null ? "" : ", as expected";
   const meant =
     expected === null || isRight(result)
-      ? [expected === null ? "" : ", as expected"]
-      : [", expected ", h("b", { className: "expected" }, expected)];
-  if (pair) return [h("b", { className: "chosen" }, askWhich(pair)), ...meant];
-  if (label !== null) return ["Recognised as ", h("b", { className: "chosen" }, label), ...meant];
-  return [
-    fault ? `Too poor to judge: ${fault}; nearest is ` : "Not recognised; nearest is ",
-    h("b", {}, nearest),
-    ...(expected === NONE ? meant : []),
-  ];
+      ? known
+      : html`, expected <b class="expected">${expected}</b>`;
+  if (pair) return html`<b class="chosen">${askWhich(pair)}</b>${meant}`;
+  if (label !== null) return html`Recognised as <b class="chosen">${label}</b>${meant}`;
+  return html`${
+    fault ? `Too poor to judge: ${fault}; nearest is ` : "Not recognised; nearest is "
+  }<b>${nearest}</b>${expected === NONE ? meant : ""}`;
 }
 
 /**
@@ -257,14 +255,15 @@ const isRight = ({ label, pair, expected, expected_none: none }) =>
  */
 export function drawOutcome({ result }) {
   const box = byId("outcome");
-  if (!result) return box.replaceChildren();
+  if (!result) return render(nothing, box);
   const { label, pair } = result;
   const wrong = expectedOf(result) === null ? label === null : !isRight(result);
   const mark = pair ? "?" : wrong ? "\u2260" : "\u2713";
   box.className = `outcome ${pair ? "asked" : wrong ? "wrong" : "right"}`;
-  return box.replaceChildren(
-    h("span", { className: "outcome-mark", "aria-hidden": "true" }, mark),
-    h("span", {}, ...outcomeWords(result), h("small", {}, supportWords(result))),
+  return render(
+    html`<span class="outcome-mark" aria-hidden="true">${mark}</span
+      ><span>${outcomeWords(result)}<small>${supportWords(result)}</small></span>`,
+    box,
   );
 }
 
@@ -277,7 +276,7 @@ function notesOn(clip) {
   const notes = listWarnings(clip, state.gestures);
   const advised = state.timeline?.turn;
   const degrees = /** @type {0 | 90 | 180 | 270} */ (advised || (360 - clip.turn) % 360);
-  if (clip.status !== "done" || !degrees) return notes.map((note) => h("li", {}, note));
+  if (clip.status !== "done" || !degrees) return notes.map((note) => html`<li>${note}</li>`);
   if (!advised) notes.push(`The picture was turned by ${clip.turn}\u00b0.`);
   const at = advised ? notes.findIndex((note) => note.includes("--turn")) : notes.length - 1;
   const turn = async () => {
@@ -285,10 +284,10 @@ function notesOn(clip) {
     await reloadClip(clip.id);
   };
   const label = advised ? `Turn the picture by ${degrees}\u00b0` : "Turn it back";
-  const options = { type: "button", className: "link", ...WRITES, onclick: turn };
-  return notes.map((note, place) =>
-    h("li", {}, note, ...(place === at ? [" ", h("button", options, label)] : [])),
-  );
+  const button = html` <button type="button" class="link" data-writes @click=${turn}>
+    ${label}
+  </button>`;
+  return notes.map((note, place) => html`<li>${note}${place === at ? button : nothing}</li>`);
 }
 
 /** Draw the bar above the frame. */
@@ -309,8 +308,8 @@ export function drawStage() {
         : "Its takes appear as soon as they have ended.";
   for (const id of ["recognise", "expected"]) byId(id).disabled = !ready || !state.takes;
   byId("save-gesture").disabled = !done || !state.takes;
-  byId("clip-warnings").replaceChildren(...notesOn(clip));
-  byId("range-text").replaceChildren();
+  render(notesOn(clip), byId("clip-warnings"));
+  render(nothing, byId("range-text"));
   drawTimeline();
 }
 

@@ -1,7 +1,7 @@
 // The curves under the timeline: the salute's confidence and the wrists' speed.
 
-import { h, svg } from "../core/dom.js";
 import { SALUTE } from "../clips/salute-threshold.js";
+import { html, svg } from "../templates.js";
 
 /** @import { Timeline } from "../core/types.d.ts" */
 
@@ -62,26 +62,22 @@ export function curves(timeline) {
     (value, index) => `L${share(index)} ${(HEIGHT * (1 - value)).toFixed(2)}`,
   );
   const area = `M0 ${HEIGHT}${tops.join("")}L1000 ${HEIGHT}Z`;
-  const drawing = svg(
-    "svg",
-    {
-      viewBox: `0 0 1000 ${HEIGHT}`,
-      preserveAspectRatio: "none",
-      role: "img",
-      "aria-label": "Salute\u2019s confidence and the wrists\u2019 speed along the clip",
-    },
-    svg("path", { class: "salute-area", d: area }),
-    svg("path", { class: "salute-bar", d: `M0 ${HEIGHT * (1 - SALUTE)}H1000` }),
-    ...CURVES.map(({ name, className }) =>
-      svg("path", { class: className, d: linePath(speed[name], top, share) }),
-    ),
-  );
   const length = unit === "torso_length" ? "torso lengths" : "extents";
-  return h(
-    "div",
-    { className: "curves", title: `Highest speed: ${top.toFixed(1)} ${length} a second` },
-    drawing,
-  );
+  return html`<div class="curves" title="Highest speed: ${top.toFixed(1)} ${length} a second">
+    <svg
+      viewBox="0 0 1000 ${HEIGHT}"
+      preserveAspectRatio="none"
+      role="img"
+      aria-label="Salute’s confidence and the wrists’ speed along the clip"
+    >
+      <path class="salute-area" d=${area} />
+      <path class="salute-bar" d="M0 ${HEIGHT * (1 - SALUTE)}H1000" />
+      ${CURVES.map(
+        ({ name, className }) =>
+          svg`<path class=${className} d=${linePath(speed[name], top, share)} />`,
+      )}
+    </svg>
+  </div>`;
 }
 
 /**
@@ -89,11 +85,8 @@ export function curves(timeline) {
  *
  * @param {string} held what begins and ends a take
  */
-export function legend(held) {
-  return h(
-    "ul",
-    { className: "curve-legend", "aria-label": "Curves" },
-    h("li", {}, h("i", { className: "salute-area" }), held),
-    CURVES.map(({ className, text }) => h("li", {}, h("i", { className }), text)),
-  );
-}
+export const legend = (held) =>
+  html`<ul class="curve-legend" aria-label="Curves">
+    <li><i class="salute-area"></i>${held}</li>
+    ${CURVES.map(({ className, text }) => html`<li><i class=${className}></i>${text}</li>`)}
+  </ul>`;

@@ -1,14 +1,14 @@
 // The timeline: takes, the playback position, and the selected range.
 
 import { filmstrip } from "../clips/filmstrip.js";
-import { byId, h, icon } from "../core/dom.js";
+import { byId } from "../core/dom.js";
 import { moment, plural } from "../core/format.js";
 import { LEAST_FRAMES, nearestFrame } from "../clips/frame-times.js";
 import { heldName, salutesIn, saluteWarning } from "../clips/salutes.js";
 import { isReadable, selectedClip, selectedRange, state, update } from "../core/state.js";
 import { keepFrame, seek } from "./playback.js";
+import { guard, html, iconOf, live, nothing, render } from "../templates.js";
 import { curves, legend } from "./timeline-curves.js";
-import { tracksArea } from "./tracks.js";
 
 /** @import { SelectedRange, Take, Timeline } from "../core/types.d.ts" */
 
@@ -24,80 +24,91 @@ const MOST_ZOOM = 40; // Each screenful of it has thumbnails of its own.
 
 let zoom = 1; // The timeline's width, as a multiple of its room.
 
-/** @type {(part: number, whole: number) => string} */
-const share = (part, whole) => `${(100 * part) / whole}%`;
+/** @type {HTMLElement | null} */
+let film = null; // the thumbnails, as wide as the track
 
 /**
- * Make the overview of a timeline that scrolls; a press or a drag moves the part in sight.
+ * The place of a span of the clip along the timeline.
  *
- * @param {HTMLElement} seen
+ * @param {number} start
+ * @param {number} end
+ * @param {number} duration
  */
-function overview(seen) {
-  const bar = h("div", { className: "overview", "aria-hidden": "true", hidden: true });
-  /** @param {PointerEvent} event */
-  const to = (event) => {
-    const { left, width } = bar.getBoundingClientRect();
-    seen.scrollLeft = (seen.scrollWidth * (event.clientX - left)) / width - seen.clientWidth / 2;
+const spanning = (start, end, duration) =>
+  `left: ${percent(start, duration)}; width: ${percent(end - start, duration)}`;
+
+/**
+ * Call `to` where the pointer was pressed, and wherever it is dragged.
+ *
+ * @param {PointerEvent & { currentTarget: any }} event
+ * @param {(area: HTMLElement, event: PointerEvent) => void} to
+ */
+function drag(event, to) {
+  const area = event.currentTarget;
+  area.setPointerCapture(event.pointerId);
+  to(area, event);
+  area.onpointermove = (/** @type {PointerEvent} */ moved) => to(area, moved);
+  area.onpointerup = area.onpointercancel = () => {
+    area.onpointermove = null;
   };
-  bar.onpointerdown = (event) => {
-    bar.setPointerCapture(event.pointerId);
-    to(event);
-    bar.onpointermove = to;
-  };
-  bar.onpointerup = bar.onpointercancel = () => {
-    bar.onpointermove = null;
-  };
-  seen.addEventListener("scroll", () => drawInSight(seen, bar));
-  return bar;
 }
 
+/** @param {HTMLElement} bar */
+const seenIn = (bar) => /** @type {HTMLElement} */ (bar.parentElement?.querySelector(".seen"));
+
 /**
- * Show which part is in sight.
+ * Move the part in sight to where the overview is pressed.
  *
- * @param {HTMLElement} seen
  * @param {HTMLElement} bar
+ * @param {PointerEvent} event
  */
-function drawInSight(seen, bar) {
-  const part = /** @type {HTMLElement | null} */ (bar.querySelector(".in-sight"));
-  if (!part) return;
-  part.style.left = share(seen.scrollLeft, seen.scrollWidth);
-  part.style.width = share(seen.clientWidth, seen.scrollWidth);
+function scrollTo(bar, { clientX }) {
+  const seen = seenIn(bar);
+  const { left, width } = bar.getBoundingClientRect();
+  seen.scrollLeft = (seen.scrollWidth * (clientX - left)) / width - seen.clientWidth / 2;
+}
+
+/** Show which part of an enlarged timeline is in sight. */
+function drawInSight() {
+  const bar = /** @type {HTMLElement | null} */ (byId("timeline").querySelector(".overview"));
+  const part = /** @type {HTMLElement | null} */ (bar?.querySelector(".in-sight"));
+  if (!bar || !part) return;
+  const { scrollLeft, scrollWidth, clientWidth } = seenIn(bar);
+  part.style.left = `${(100 * scrollLeft) / scrollWidth}%`;
+  part.style.width = `${(100 * clientWidth) / scrollWidth}%`;
 }
 
 /**
- * Draw the overview where the timeline is enlarged.
+ * The overview of a timeline that scrolls; a press or a drag moves the part in sight.
  *
- * @param {HTMLElement} box of the timeline
  * @param {Take[]} takes
- * @param {number} last second of the clip
- * @param {boolean} enlarged
+ * @param {number} duration
  */
-function drawOverview(box, takes, last, enlarged) {
-  const [bar, seen] = [".overview", ".seen"].map(
-    (each) => /** @type {HTMLElement | null} */ (box.querySelector(each)),
-  );
-  if (!bar || !seen) return;
-  bar.hidden = !enlarged;
-  bar.replaceChildren(
-    ...takes.map(({ start, end }) =>
-      h("i", { style: { left: share(start, last), width: share(end - start, last) } }),
-    ),
-    h("i", { className: "in-sight" }),
-  );
-  drawInSight(seen, bar);
-}
+const overview = (takes, duration) =>
+  html`<div
+    class="overview"
+    aria-hidden="true"
+    ?hidden=${zoom <= 1}
+    @pointerdown=${(/** @type {any} */ event) => drag(event, scrollTo)}
+  >
+    ${takes.map(({ start, end }) => html`<i .style=${spanning(start, end, duration)}></i>`)}
+    <i class="in-sight"></i>
+  </div>`;
 
 /** @param {number} duration */
 function ruler(duration) {
   const least = duration / zoom / 10; // Ten fit into what is in sight.
   const step = [0.1, 0.5, 1, 2, 5, 10, 30, 60, 120].find((each) => each >= least) ?? 300;
-  const ticks = [];
-  for (let second = 0; second <= duration - step / 3; second += step) {
-    ticks.push(
-      h("span", { style: { left: percent(second, duration) } }, `${Number(second.toFixed(1))} s`),
-    );
-  }
-  return h("div", { className: "ruler", "aria-hidden": "true" }, ticks);
+  const count = Math.floor(duration / step - 1 / 3) + 1;
+  const ticks = Array.from({ length: count }, (_, index) => index * step);
+  return html`<div class="ruler" aria-hidden="true">
+    ${ticks.map(
+      (second) =>
+        html`<span .style=${`left: ${percent(second, duration)}`}
+          >${Number(second.toFixed(1))} s</span
+        >`,
+    )}
+  </div>`;
 }
 
 /**
@@ -105,34 +116,21 @@ function ruler(duration) {
  * @param {number} index
  * @param {number} duration
  */
-function takeButton(take, index, duration) {
+function takeButton({ start, end, stroke_start: from, stroke_end: to, closed }, index, duration) {
   const chosen = state.take === index;
-  const length = take.end - take.start || 1;
-  const stroke = h("span", {
-    className: "stroke",
-    style: {
-      left: percent(take.stroke_start - take.start, length),
-      width: percent(take.stroke_end - take.stroke_start, length),
-    },
-  });
   const name = `Take ${index + 1}`;
-  return h(
-    "button",
-    {
-      type: "button",
-      className: `take${chosen ? " chosen" : ""}${take.closed ? "" : " open"}`,
-      "aria-pressed": String(chosen),
-      "aria-label": `${name}, ${moment(take.start)} to ${moment(take.end)}${take.closed ? "" : ", no closing salute"}`,
-      title: `${name}: from ${held()} to ${held()}. The bright part is the gesture, without the hand's transit from and to it.`,
-      style: {
-        left: percent(take.start, duration),
-        width: percent(take.end - take.start, duration),
-      },
-      onclick: () => update({ take: index, start: null, end: null, recognition: null }),
-    },
-    stroke,
-    h("span", { className: "take-name" }, String(index + 1)),
-  );
+  return html`<button
+    type="button"
+    class="take ${chosen ? "chosen" : ""} ${closed ? "" : "open"}"
+    aria-pressed=${chosen}
+    aria-label="${name}, ${moment(start)} to ${moment(end)}${closed ? "" : ", no closing salute"}"
+    title="${name}: from ${held()} to ${held()}. The bright part is the gesture, without the hand's transit from and to it."
+    .style=${spanning(start, end, duration)}
+    @click=${() => update({ take: index, start: null, end: null, recognition: null })}
+  >
+    <span class="stroke" .style=${spanning(from - start, to - start, end - start || 1)}></span
+    ><span class="take-name">${index + 1}</span>
+  </button>`;
 }
 
 /** What a diver holds before and after a gesture. */
@@ -145,16 +143,14 @@ const held = () => heldName(state.gestures);
  * @param {number} duration
  */
 const saluteMarks = ({ start, end, closed }, duration) =>
-  [["opens", start], ...(closed ? [["closes", end]] : [])].map(([kind, seconds]) =>
-    h(
-      "span",
-      {
-        className: `salute ${kind}`,
-        title: held(),
-        style: { left: percent(Number(seconds), duration) },
-      },
-      icon("salute"),
-    ),
+  [["opens", start], ...(closed ? [["closes", end]] : [])].map(
+    ([kind, seconds]) =>
+      html`<span
+        class="salute ${kind}"
+        title=${held()}
+        .style=${`left: ${percent(Number(seconds), duration)}`}
+        >${iconOf("salute")}</span
+      >`,
   );
 
 /**
@@ -164,13 +160,13 @@ const saluteMarks = ({ start, end, closed }, duration) =>
  * @param {number} duration
  */
 const unseen = ([start, end], duration) =>
-  h("span", {
-    className: "unseen",
-    role: "img",
-    "aria-label": `Not seen, ${moment(start)} to ${moment(end)}`,
-    title: "Too little was seen here: a salute may have been missed.",
-    style: { left: percent(start, duration), width: percent(end - start, duration) },
-  });
+  html`<span
+    class="unseen"
+    role="img"
+    aria-label="Not seen, ${moment(start)} to ${moment(end)}"
+    title="Too little was seen here: a salute may have been missed."
+    .style=${spanning(start, end, duration)}
+  ></span>`;
 
 /** When the last frame is shown: the right edge of the timeline. */
 const timeOfFrames = () => /** @type {Timeline} */ (state.timeline).time;
@@ -183,50 +179,39 @@ const frameAt = (seconds) => nearestFrame(timeOfFrames(), seconds);
 /** @type {Record<string, number>} how many frames a key moves a handle on */
 const WAYS = { ArrowLeft: -1, ArrowDown: -1, ArrowRight: 1, ArrowUp: 1 };
 
-/** @param {"start" | "end"} which */
-function handle(which) {
+/**
+ * @param {"start" | "end"} which
+ * @param {SelectedRange} range
+ */
+function handle(which, range) {
   const label = which === "start" ? "Start of the range" : "End of the range";
-  const input = h("input", {
-    type: "range",
-    className: `handle ${which}`,
-    min: 0,
-    max: lastMoment(),
-    step: "any",
-    "aria-label": label,
-    title: `${label}: drag, or use the arrow keys, frame by frame`,
-  });
+  const frame = frameAt(range[which]);
   /** @param {number} frame */
   const to = (frame) => {
     move(which, frame);
     seek(frame);
   };
-  input.oninput = () => to(frameAt(Number(input.value)));
   // The browser's default step is a share of the length, not a frame.
-  input.onkeydown = (event) => {
+  const pressed = (/** @type {any} */ event) => {
     const way = WAYS[event.key];
     if (!way) return;
     event.preventDefault();
-    to(
-      Math.min(
-        timeOfFrames().length - 1,
-        Math.max(0, frameAt(Number(input.value)) + way * (event.shiftKey ? 10 : 1)),
-      ),
-    );
+    const next = frameAt(Number(event.target.value)) + way * (event.shiftKey ? 10 : 1);
+    to(Math.min(timeOfFrames().length - 1, Math.max(0, next)));
   };
-  return input;
-}
-
-/**
- * @param {HTMLElement} track
- * @param {SelectedRange} range
- */
-function placeHandles(track, range) {
-  for (const which of /** @type {const} */ (["start", "end"])) {
-    const input = /** @type {HTMLInputElement} */ (track.querySelector(`.handle.${which}`));
-    const frame = frameAt(range[which]);
-    input.value = String(timeOfFrames()[frame]);
-    input.setAttribute("aria-valuetext", `frame ${frame}, ${moment(range[which])}`);
-  }
+  return html`<input
+    type="range"
+    class="handle ${which}"
+    min="0"
+    max=${lastMoment()}
+    step="any"
+    aria-label=${label}
+    aria-valuetext="frame ${frame}, ${moment(range[which])}"
+    title="${label}: drag, or use the arrow keys, frame by frame"
+    .value=${live(String(timeOfFrames()[frame]))}
+    @input=${(/** @type {any} */ { target }) => to(frameAt(Number(target.value)))}
+    @keydown=${pressed}
+  />`;
 }
 
 /**
@@ -285,42 +270,14 @@ function summary(range, takes) {
 /**
  * Let the clock follow the pointer along the thumbnails or curves.
  *
- * @param {HTMLElement} area
+ * @param {PointerEvent & { currentTarget: any, target: any }} event
  */
-function scrub(area) {
-  /** @param {PointerEvent} event */
-  const to = (event) => {
+function scrub(event) {
+  if (event.button !== 0 || event.target.closest("button, input")) return;
+  drag(event, (area, { clientX }) => {
     const { left, width } = area.getBoundingClientRect();
-    seek(frameAt((lastMoment() * (event.clientX - left)) / width));
-  };
-  area.onpointerdown = (event) => {
-    if (event.button !== 0 || /** @type {Element} */ (event.target).closest("button, input"))
-      return;
-    area.setPointerCapture(event.pointerId);
-    to(event);
-    area.onpointermove = to;
-  };
-  area.onpointerup = area.onpointercancel = () => {
-    area.onpointermove = null;
-  };
-}
-
-/**
- * Replace what lies on the track; the handle that is dragged must stay the same element.
- *
- * @param {HTMLElement} track
- * @param {Node[]} content
- * @param {HTMLElement[]} takes
- */
-function redrawTrack(track, content, takes) {
-  const focused = [...track.querySelectorAll(".take")].findIndex(
-    (each) => each === document.activeElement,
-  );
-  track.querySelectorAll(".take, .range, .salute, .unseen").forEach((each) => each.remove());
-  const film = track.querySelector(".filmstrip");
-  if (film) film.after(...content);
-  else track.prepend(...content);
-  takes[focused]?.focus();
+    seek(frameAt((lastMoment() * (clientX - left)) / width));
+  });
 }
 
 /**
@@ -333,101 +290,99 @@ function drawNote(range, takes) {
   const inside = salutesIn(/** @type {Timeline} */ (state.timeline), range.start, range.end);
   const warning = range.take ? "" : saluteWarning(inside, held());
   const back = () => update({ take: 0, start: null, end: null, recognition: null });
-  byId("range-text").replaceChildren(
-    h(
-      "p",
-      { className: "range-text" },
-      h("span", { role: "status" }, summary(range, takes)),
-      warning ? h("span", { className: "salute-warning", role: "alert" }, warning) : null,
-      state.take === null && takes.length
-        ? h(
-            "button",
-            { type: "button", className: "link", onclick: back },
-            `Back to ${plural(takes.length, "take")}`,
-          )
-        : null,
-    ),
+  const takesAgain = html`<button type="button" class="link" @click=${back}>
+    Back to ${plural(takes.length, "take")}
+  </button>`;
+  render(
+    html`<p class="range-text">
+      <span role="status">${summary(range, takes)}</span>
+      ${warning ? html`<span class="salute-warning" role="alert">${warning}</span>` : nothing}
+      ${state.take === null && takes.length ? takesAgain : nothing}
+    </p>`,
+    byId("range-text"),
   );
+}
+
+/**
+ * What lies on the track: the thumbnails, the range, the takes with their salutes, the handles.
+ *
+ * @param {SelectedRange} range
+ * @param {Take[]} takes
+ * @param {number} duration
+ */
+function track(range, takes, duration) {
+  // Takes found without a trigger have nothing held at their ends.
+  const marked = held() === "gesture" ? [] : takes;
+  const second = (byId("timeline").querySelector(".track")?.clientWidth ?? 0) / duration;
+  const salutes = marked
+    .filter(({ start }, index) => second * (start - (marked[index - 1]?.end ?? 0)) > SALUTES_ROOM)
+    .flatMap((take) => saluteMarks(take, duration));
+  const { unseen: holes } = /** @type {Timeline} */ (state.timeline);
+  return html`<div class="track" role="group" aria-label="Takes">
+    ${film}
+    <div class="range" .style=${spanning(range.start, range.end, duration)}></div>
+    ${salutes}${takes.map((take, index) => takeButton(take, index, duration))}${holes.map((span) =>
+      unseen(span, duration),
+    )}${handle("start", range)}${handle("end", range)}
+  </div>`;
+}
+
+/** @param {WheelEvent} event */
+function pinch(event) {
+  // A pinch on a touchpad arrives as a wheel with Ctrl.
+  if (!event.ctrlKey) return;
+  event.preventDefault();
+  zoomBy(2 ** (-event.deltaY / 200), event.clientX);
 }
 
 /** Draw the timeline of the clip on display. */
 export function drawTimeline() {
   const box = byId("timeline");
   const clip = selectedClip();
+  const { takes, timeline } = state;
+  if (!clip || !isReadable() || !takes || !timeline) {
+    box.dataset.clip = "";
+    render(nothing, box);
+    return;
+  }
   const range = /** @type {SelectedRange} */ (selectedRange());
-  if (!clip || !isReadable() || !state.takes || !state.timeline) return box.replaceChildren();
   const duration = lastMoment();
-  const track = box.querySelector(".track");
-  const [left, width] = [range.start, range.end - range.start].map((part) =>
-    percent(part, duration),
-  );
-  const lengths = h("div", { className: "range", style: { left, width } });
-  const takes = state.takes.map((take, index) => takeButton(take, index, duration));
-  // Takes found without a trigger have nothing held at their ends.
-  const marked = held() === "gesture" ? [] : state.takes;
-  const second = (track?.clientWidth ?? 0) / duration;
-  const salutes = marked
-    .filter(({ start }, index) => second * (start - (marked[index - 1]?.end ?? 0)) > SALUTES_ROOM)
-    .flatMap((take) => saluteMarks(take, duration));
-  const holes = state.timeline.unseen.map((span) => unseen(span, duration));
-  drawNote(range, state.takes);
-  drawOverview(box, state.takes, duration, zoom > 1);
   // While a clip is being read, its end moves.
   const drawn = `${clip.id} ${duration}`;
-  if (track && box.dataset.clip === drawn) {
-    redrawTrack(track, [lengths, ...salutes, ...takes, ...holes], takes);
-    placeHandles(track, range);
-    return undefined;
+  const another = box.dataset.clip !== drawn;
+  if (another) {
+    box.dataset.clip = drawn;
+    zoom = 1;
+    film = null;
   }
-  box.dataset.clip = drawn;
-  zoom = 1;
-  const lane = h(
-    "div",
-    { className: "track", role: "group", "aria-label": "Takes" },
-    lengths,
-    salutes,
-    takes,
-    holes,
-    handle("start"),
-    handle("end"),
+  drawNote(range, takes);
+  const buttons = ZOOMS.map(
+    ({ sign, key, text, zoom: run }) =>
+      html`<button type="button" aria-label=${text} title="${text} (${key})" @click=${run}>
+        ${sign}
+      </button>`,
   );
-  const along = h(
-    "div",
-    { className: "along" },
-    lane,
-    h("div", { className: "labelled-ranges", id: "labelled-ranges" }),
-    h("div", { className: "curve-area" }, curves(state.timeline)),
-    tracksArea(),
-    h("i", { className: "now", id: "now" }),
+  render(
+    html`${overview(takes, duration)}
+      <div class="seen" @scroll=${drawInSight} @wheel=${pinch}>
+        <div class="zoomed" .style=${`width: ${100 * zoom}%`}>
+          <div class="along" @pointerdown=${scrub}>
+            ${track(range, takes, duration)}
+            <div class="labelled-ranges" id="labelled-ranges"></div>
+            <div class="curve-area">${guard([timeline], () => curves(timeline))}</div>
+            <div class="tracks" id="tracks" hidden></div>
+            <i class="now" id="now"></i>
+          </div>
+          ${guard([duration, zoom], () => ruler(duration))}
+        </div>
+      </div>
+      <div class="under">${buttons}${legend(held().replace("Vulcan ", ""))}</div>`,
+    box,
   );
-  const zoomed = h("div", { className: "zoomed" }, along, ruler(duration));
-  const seen = h("div", { className: "seen" }, zoomed);
-  // A pinch on a touchpad arrives as a wheel with Ctrl.
-  seen.addEventListener("wheel", (event) => {
-    if (!event.ctrlKey) return;
-    event.preventDefault();
-    zoomBy(2 ** (-event.deltaY / 200), event.clientX);
-  });
-  box.replaceChildren(
-    overview(seen),
-    seen,
-    h(
-      "div",
-      { className: "under" },
-      ZOOMS.map(({ sign, key, text: title, zoom: onclick }) =>
-        h(
-          "button",
-          { type: "button", "aria-label": title, title: `${title} (${key})`, onclick },
-          sign,
-        ),
-      ),
-      legend(held().replace("Vulcan ", "")),
-    ),
-  );
-  placeHandles(lane, range);
-  scrub(along);
+  drawInSight();
+  if (!another) return;
   zoomBy(1);
-  return drawNow();
+  drawNow();
 }
 
 /**
@@ -438,10 +393,10 @@ export function drawTimeline() {
  */
 function zoomBy(factor, clientX) {
   const clip = selectedClip();
-  const [seen, zoomed, track] = [".seen", ".zoomed", ".track"].map(
+  const [seen, zoomed, lane] = [".seen", ".zoomed", ".track"].map(
     (each) => /** @type {HTMLElement | null} */ (byId("timeline").querySelector(each)),
   );
-  if (!seen || !zoomed || !track || !clip || !state.timeline) return;
+  if (!seen || !zoomed || !lane || !clip || !state.timeline) return;
   const { left, width } = zoomed.getBoundingClientRect();
   const place = clientX ?? left + (width * (state.position?.time ?? 0)) / lastMoment();
   const share = (place - left) / width;
@@ -449,9 +404,7 @@ function zoomBy(factor, clientX) {
   zoom = Math.max(1, Math.min(MOST_ZOOM, lastMoment() / LEAST_SECONDS, zoom * factor));
   zoomed.style.width = `${100 * zoom}%`;
   seen.scrollLeft = share * zoomed.clientWidth - Math.min(seen.clientWidth, Math.max(0, inSight));
-  zoomed.querySelector(".ruler")?.replaceWith(ruler(lastMoment()));
-  track.querySelector(".filmstrip")?.remove();
-  track.prepend(filmstrip(clip, state.timeline, track.clientWidth, track.clientHeight) ?? "");
+  film = filmstrip(clip, state.timeline, lane.clientWidth, lane.clientHeight);
   drawTimeline();
 }
 

@@ -4,6 +4,7 @@ import { browserStore } from "../core/browser-store.js";
 import { byId, h } from "../core/dom.js";
 import { follow, selectedClip } from "../core/state.js";
 import { go } from "../core/views.js";
+import { html, nothing, render } from "../templates.js";
 import { showExample } from "./welcome.js";
 
 /** `onClip`: the step needs a clip; without one the example is offered. */
@@ -118,41 +119,36 @@ function end() {
 function show(number, focus) {
   const step = STEPS[number];
   at = number;
-  card?.classList.toggle("intro", !number);
+  if (!card) return;
+  card.classList.toggle("intro", !number);
   offering = offersExample(step);
   const last = number === STEPS.length - 1;
-  const place = placeOf(step);
-  place?.scrollIntoView({ block: "center" });
-  const ring = byId("tour-ring");
-  ring.hidden = !place;
-  const onward = h(
-    "button",
-    {
-      type: "button",
-      className: "primary",
-      onclick: () => (last ? end() : show(number + 1, true)),
-    },
-    last ? "Done" : number ? "Next" : "Show me",
+  pointed = placeOf(step);
+  pointed?.scrollIntoView({ block: "center" });
+  byId("tour-ring").hidden = !pointed;
+  const example = html`<button type="button" @click=${showExample}>Open the example</button>`;
+  const back = html`<button type="button" @click=${() => show(number - 1, true)}>Back</button>`;
+  const skip = html`<button type="button" class="quiet" @click=${end}>Skip</button>`;
+  render(
+    html`<h2 id="tour-title">${step.title}</h2>
+      <p id="tour-text">${step.text}</p>
+      ${offering ? example : nothing}
+      <div class="tour-actions">
+        <span class="dim">${number + 1} of ${STEPS.length}</span>
+        <span class="spacer"></span>
+        ${number ? back : nothing}${last ? nothing : skip}
+        <button
+          type="button"
+          class="primary"
+          @click=${() => (last ? end() : show(number + 1, true))}
+        >
+          ${last ? "Done" : number ? "Next" : "Show me"}
+        </button>
+      </div>`,
+    card,
   );
-  card?.replaceChildren(
-    h("h2", { id: "tour-title" }, step.title),
-    h("p", { id: "tour-text" }, step.text),
-    offering ? h("button", { type: "button", onclick: showExample }, "Open the example") : "",
-    h(
-      "div",
-      { className: "tour-actions" },
-      h("span", { className: "dim" }, `${number + 1} of ${STEPS.length}`),
-      h("span", { className: "spacer" }),
-      number
-        ? h("button", { type: "button", onclick: () => show(number - 1, true) }, "Back")
-        : null,
-      last ? null : h("button", { type: "button", className: "quiet", onclick: end }, "Skip"),
-      onward,
-    ),
-  );
-  pointed = place;
   position();
-  if (focus) onward.focus();
+  if (focus) /** @type {HTMLElement | null} */ (card.querySelector(".primary"))?.focus();
 }
 
 /** Point at elements that appeared since, such as the example. */

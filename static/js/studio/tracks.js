@@ -4,10 +4,11 @@ import { nearestFrame } from "../clips/frame-times.js";
 import { versionOf } from "../clips/clip-store.js";
 import * as api from "../core/api.js";
 import { browserStore } from "../core/browser-store.js";
-import { h, svg } from "../core/dom.js";
+import { h } from "../core/dom.js";
 import { readable } from "../core/format.js";
 import { selectedClip, selectedRange, state } from "../core/state.js";
 import { attempt } from "../core/toasts.js";
+import { html, render } from "../templates.js";
 import { linePath } from "./timeline-curves.js";
 import { movingWrists, tracksOf } from "./wrist-motion.js";
 
@@ -19,9 +20,6 @@ let open = browserStore.get(KEY) !== null;
 
 /** @type {{ clip: string, poses: Promise<Poses | null> } | null} */
 let loaded = null;
-
-/** Where the tracks are drawn, along the timeline. */
-export const tracksArea = () => h("div", { className: "tracks", id: "tracks", hidden: true });
 
 /** The button in the transport bar. */
 export const tracksButton = () =>
@@ -66,22 +64,18 @@ function lane({ name, x, y }, time) {
   const last = time.at(-1) || 1;
   /** @param {number} index */
   const share = (index) => ((1000 * time[index]) / last).toFixed(1);
-  return h(
-    "div",
-    { className: "curves track-lane" },
-    svg(
-      "svg",
-      {
-        viewBox: "0 0 1000 30",
-        preserveAspectRatio: "none",
-        role: "img",
-        "aria-label": `Track of the ${readable(name)}`,
-      },
-      svg("path", { class: "right", d: linePath(x, 1, share) }),
-      svg("path", { class: "left", d: linePath(y, 1, share) }),
-    ),
-    h("span", {}, `${readable(name)}: x to the right, y upwards (dashed)`),
-  );
+  return html`<div class="curves track-lane">
+    <svg
+      viewBox="0 0 1000 30"
+      preserveAspectRatio="none"
+      role="img"
+      aria-label="Track of the ${readable(name)}"
+    >
+      <path class="right" d=${linePath(x, 1, share)} />
+      <path class="left" d=${linePath(y, 1, share)} />
+    </svg>
+    <span>${readable(name)}: x to the right, y upwards (dashed)</span>
+  </div>`;
 }
 
 /** Draw the tracks of the clip on display, where they are shown. */
@@ -98,9 +92,9 @@ export async function drawTracks() {
     nearestFrame(poses.time, range[0]),
     nearestFrame(poses.time, range[1]),
   ]);
-  box.replaceChildren(
-    ...(wrists.length
-      ? tracksOf(poses, wrists).map((track) => lane(track, poses.time))
-      : [h("p", { className: "dim" }, "No wrist moves in this range.")]),
+  const none = html`<p class="dim">No wrist moves in this range.</p>`;
+  render(
+    wrists.length ? tracksOf(poses, wrists).map((track) => lane(track, poses.time)) : none,
+    box,
   );
 }

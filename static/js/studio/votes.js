@@ -2,10 +2,12 @@
 // gesture, with weight factors to try.
 
 import * as api from "../core/api.js";
-import { byId, h } from "../core/dom.js";
+import { byId } from "../core/dom.js";
 import { percent, plural, readable } from "../core/format.js";
 import { isReadable, state } from "../core/state.js";
 import { attempt } from "../core/toasts.js";
+import { FACTORS } from "../languages/settings-dialog.js";
+import { html, nothing, optionsOf, render, until } from "../templates.js";
 import { tryOut } from "./intervention-trial.js";
 import { supportOf } from "./vote-support.js";
 import { MOST_COLUMNS, nearnessOf, orderOf, shortNumber, splitByWeight } from "./vote-order.js";
@@ -22,8 +24,6 @@ const CONFIDENCE_WORDS = {
   paper:
     "Confidence says how clearly the winner leads, by votes and by distance; the weight is that of the voters whose nearest gesture it is.",
 };
-
-const FACTORS = [0, 0.25, 0.5, 1, 2, 4];
 
 /** @type {(factor: number) => string} */
 const factorText = (factor) =>
@@ -56,31 +56,22 @@ function weightCell(result, voter) {
   const factor = factorsOf(result)[voter] ?? 1;
   const weight = result.weights[voter] ?? 0;
   const factors = FACTORS.includes(factor) ? FACTORS : [...FACTORS, factor].sort((a, b) => a - b);
-  const select = h(
-    "select",
-    {
-      "aria-label": `Weight of ${readable(voter)}: ${percent(weight)}`,
-      title: "Try another weight factor; only Keep saves it",
-      onchange: () =>
-        tryOut({
-          change: {
-            kind: "weight_factor",
-            voter,
-            factor: Number(select.value),
-            words: wordsOf(voter, Number(select.value)),
-          },
-        }),
-    },
-    factors.map((each) => h("option", { value: each }, factorText(each))),
-  );
-  select.value = String(factor);
-  return h(
-    "td",
-    { className: "weight" },
-    percent(weight),
-    factor === 1 ? null : h("b", {}, ` ${factorText(factor)}`),
-    select,
-  );
+  /** @type {[string, string][]} */
+  const options = factors.map((each) => [String(each), factorText(each)]);
+  const weigh = (/** @type {any} */ { target }) => {
+    const chosen = Number(target.value);
+    const words = wordsOf(voter, chosen);
+    tryOut({ change: { kind: "weight_factor", voter, factor: chosen, words } });
+  };
+  return html`<td class="weight">
+    ${percent(weight)}${factor === 1 ? nothing : html`<b> ${factorText(factor)}</b>`}<select
+      aria-label="Weight of ${readable(voter)}: ${percent(weight)}"
+      title="Try another weight factor; only Keep saves it"
+      @change=${weigh}
+    >
+      ${optionsOf(options, String(factor))}
+    </select>
+  </td>`;
 }
 
 /**
@@ -94,22 +85,17 @@ function row(result, at, columns) {
   const cells = columns.map((column) => {
     const share = (4 + 42 * nearness[column] ** 2).toFixed(0);
     const choice = result.votes[voter] === result.gestures[column];
-    return h(
-      "td",
-      {
-        className: choice ? "choice" : "",
-        style: { background: `color-mix(in srgb, var(--accent) ${share}%, transparent)` },
-      },
-      shortNumber(result.distances[at][column]),
-    );
+    return html`<td
+      class=${choice ? "choice" : ""}
+      .style=${`background: color-mix(in srgb, var(--accent) ${share}%, transparent)`}
+    >
+      ${shortNumber(result.distances[at][column])}
+    </td>`;
   });
-  return h(
-    "tr",
-    { className: result.weights[voter] ? "" : "mute" },
-    h("th", { scope: "row" }, readable(voter)),
-    weightCell(result, voter),
-    cells,
-  );
+  return html`<tr class=${result.weights[voter] ? "" : "mute"}>
+    <th scope="row">${readable(voter)}</th>
+    ${weightCell(result, voter)}${cells}
+  </tr>`;
 }
 
 /**
@@ -122,12 +108,9 @@ function head({ gestures, label, expected }, column) {
   const roles = [name === label ? "chosen" : "", name === expected ? "expected" : ""]
     .filter(Boolean)
     .join(", ");
-  return h(
-    "th",
-    { scope: "col", className: `gesture ${kind}`, title: roles ? `${name}: ${roles}` : name },
-    h("span", {}, name),
-    roles ? h("span", { className: "visually-hidden" }, roles) : null,
-  );
+  return html`<th scope="col" class="gesture ${kind}" title=${roles ? `${name}: ${roles}` : name}>
+    <span>${name}</span>${roles && html`<span class="visually-hidden">${roles}</span>`}
+  </th>`;
 }
 
 /**
@@ -137,42 +120,31 @@ function head({ gestures, label, expected }, column) {
  */
 function table(result, rows, columns) {
   const support = supportOf(result);
-  return h(
-    "div",
-    { className: "vote-scroll", tabIndex: 0, role: "group", "aria-label": "Votes, scrollable" },
-    h(
-      "table",
-      { className: "vote-table", "aria-label": "Votes" },
-      h(
-        "thead",
-        {},
-        h(
-          "tr",
-          {},
-          h("th", { scope: "col" }, "voter"),
-          h("th", { scope: "col" }, "weight"),
-          columns.map((column) => head(result, column)),
-        ),
-      ),
-      h(
-        "tbody",
-        {},
-        rows.map((at) => row(result, at, columns)),
-      ),
-      h(
-        "tfoot",
-        {},
-        h(
-          "tr",
-          {},
-          h("th", { scope: "row", colSpan: 2 }, "weight of its voters"),
-          columns.map((column) =>
-            h("td", { className: "votes-for" }, percent(support.get(result.gestures[column]) ?? 0)),
-          ),
-        ),
-      ),
-    ),
-  );
+  return html`<div class="vote-scroll" tabindex="0" role="group" aria-label="Votes, scrollable">
+    <table class="vote-table" aria-label="Votes">
+      <thead>
+        <tr>
+          <th scope="col">voter</th>
+          <th scope="col">weight</th>
+          ${columns.map((column) => head(result, column))}
+        </tr>
+      </thead>
+      <tbody>
+        ${rows.map((at) => row(result, at, columns))}
+      </tbody>
+      <tfoot>
+        <tr>
+          <th scope="row" colspan="2">weight of its voters</th>
+          ${columns.map(
+            (column) =>
+              html`<td class="votes-for">
+                ${percent(support.get(result.gestures[column]) ?? 0)}
+              </td>`,
+          )}
+        </tr>
+      </tfoot>
+    </table>
+  </div>`;
 }
 
 let whole = false; // Whether voters without weight are shown, too.
@@ -185,61 +157,61 @@ let whole = false; // Whether voters without weight are shown, too.
 function ballot(result) {
   const { rows, columns } = orderOf(result);
   const { heard, silent } = splitByWeight(result, rows, factorsOf(result));
-  const place = h("div");
-  const toggle = h("button", {
-    type: "button",
-    className: "link",
-    onclick: () => {
-      whole = !whole;
-      draw();
-    },
-  });
-  const draw = () => {
-    place.replaceChildren(table(result, whole ? rows : heard, columns));
-    toggle.textContent = whole ? "Hide" : "Show";
-    toggle.setAttribute("aria-expanded", String(whole));
-    toggle.setAttribute("aria-label", `${toggle.textContent} the voters without weight`);
+  const turn = () => {
+    whole = !whole;
+    render(decision(result), byId("votes"));
   };
-  draw();
-  const line = h("p", { className: "dim" }, `${plural(silent.length, "voter")} without weight `);
-  line.append(toggle);
-  return silent.length ? [place, line] : [place];
+  const text = whole ? "Hide" : "Show";
+  const toggle = html`<button
+    type="button"
+    class="link"
+    aria-expanded=${whole}
+    aria-label="${text} the voters without weight"
+    @click=${turn}
+  >
+    ${text}
+  </button>`;
+  const words = `${plural(silent.length, "voter")} without weight`;
+  return html`<div>${table(result, whole ? rows : heard, columns)}</div>
+    ${silent.length ? html`<p class="dim">${words} ${toggle}</p>` : nothing}`;
 }
+
+/** @type {{ of: string, figures: Promise<unknown> }} */
+let images = { of: "", figures: Promise.resolve(nothing) };
 
 /**
- * Load the compared images into a box.
+ * The compared images, loaded once.
  *
- * @param {HTMLElement} box
- * @param {Recognition} result
+ * @param {string} id of the recognition
  */
-async function loadImages(box, result) {
-  const images = await attempt("Loading the images", () => api.recognitions.images(result.id));
-  box.replaceChildren(
-    ...(images ?? []).map(({ caption, image }) =>
-      h(
-        "figure",
-        {},
-        h("img", { src: image, alt: `Trajectory image: ${caption}`, width: 64, height: 64 }),
-        h("figcaption", {}, caption),
-      ),
-    ),
-  );
+function imagesOf(id) {
+  const load = async () => {
+    const found = await attempt("Loading the images", () => api.recognitions.images(id));
+    return (found ?? []).map(
+      ({ caption, image }) =>
+        html`<figure>
+          <img alt="Trajectory image: ${caption}" width="64" height="64" src=${image} />
+          <figcaption>${caption}</figcaption>
+        </figure>`,
+    );
+  };
+  if (images.of !== id) images = { of: id, figures: load() };
+  return until(images.figures, nothing);
 }
 
-const undecided = () =>
-  h(
-    "div",
-    { className: "undecided" },
-    h("h2", {}, "No decision yet"),
-    h(
-      "p",
-      { className: "dim" },
-      "Recognise the take to see how near each gesture is, or save it as a gesture.",
-    ),
-  );
-
-/** @type {string | null} */
-let drawn = null;
+/** @param {Recognition | null} result */
+function decision(result) {
+  if (!result)
+    return html`<div class="undecided">
+      <h2>No decision yet</h2>
+      <p class="dim">
+        Recognise the take to see how near each gesture is, or save it as a gesture.
+      </p>
+    </div>`;
+  return html`<div class="vote-images">${imagesOf(result.id)}</div>
+    ${ballot(result)}
+    <p class="dim">${CONFIDENCE_WORDS[result.profile]}</p>`;
+}
 
 /**
  * Draw the decision of the recognition on display.
@@ -249,18 +221,9 @@ let drawn = null;
 export function drawVotes({ result }) {
   const box = byId("votes");
   box.hidden = !isReadable();
-  const key = result
-    ? `${result.id} ${JSON.stringify(state.gestures?.tuning ?? null)}`
-    : `undecided ${state.gestures?.labels.length}`;
-  if (box.hidden || key === drawn) return;
-  drawn = key;
+  if (box.hidden) return;
   // The same width before and after the decision, so that the picture stays in place.
   const columns = (result?.gestures ?? state.gestures?.labels ?? []).length;
   box.style.setProperty("--columns", String(Math.min(columns, MOST_COLUMNS)));
-  if (!result) return box.replaceChildren(undecided());
-  const images = h("div", { className: "vote-images" });
-  const words = CONFIDENCE_WORDS[result.profile];
-  box.replaceChildren(images, ...ballot(result), h("p", { className: "dim" }, words));
-  loadImages(images, result);
-  return undefined;
+  render(decision(result), box);
 }

@@ -5,7 +5,7 @@ import { needsTopic, select, statusText } from "../clips/clip-store.js";
 import { addSampleClip, samplesList } from "../clips/sample-clips.js";
 import { topicsPanel } from "../clips/topic-dialog.js";
 import * as api from "../core/api.js";
-import { byId, h, icon, WRITES } from "../core/dom.js";
+import { byId, h } from "../core/dom.js";
 import { showFrames } from "../clips/frame-times.js";
 import { drawPose, skeleton } from "../clips/skeleton.js";
 import { mayWrite } from "../core/session.js";
@@ -13,6 +13,7 @@ import { isReadable, selectedClip, state, update, whenLoaded } from "../core/sta
 import { toast } from "../core/toasts.js";
 import { go } from "../core/views.js";
 import { choose, knowsSampleClips, MISREAD } from "../languages/language-store.js";
+import { elementOf, html, iconOf, nothing } from "../templates.js";
 
 /** @import { Clip, Job, LanguageSummary, Sample, State } from "../core/types.d.ts" */
 
@@ -62,31 +63,23 @@ function firstTake() {
     // A browser without H.264 shows the drawing of the salute alone.
     onerror: () => film.closest("button")?.remove(),
   });
-  return h(
-    "figure",
-    { className: "first-take" },
-    h(
-      "button",
-      {
-        type: "button",
-        title: "Play or pause",
-        "aria-label": "Film: a circle between two Vulcan salutes becomes a gesture. Play or pause",
-        onclick: () => (film.paused ? film.play() : film.pause()),
-      },
-      film,
-    ),
-    h(
-      "figcaption",
-      {},
-      icon("salute"),
-      h(
-        "span",
-        {},
-        h("b", {}, "Vulcan salute: "),
-        "palm forward, fingers parted two by two, held for half a second.",
-      ),
-    ),
-  );
+  const turn = () => (film.paused ? film.play() : film.pause());
+  return html`<figure class="first-take">
+    <button
+      type="button"
+      title="Play or pause"
+      aria-label="Film: a circle between two Vulcan salutes becomes a gesture. Play or pause"
+      @click=${turn}
+    >
+      ${film}
+    </button>
+    <figcaption>
+      ${iconOf("salute")}<span
+        ><b>Vulcan salute: </b>palm forward, fingers parted two by two, held for half a
+        second.</span
+      >
+    </figcaption>
+  </figure>`;
 }
 
 /**
@@ -97,21 +90,21 @@ function firstTake() {
  */
 function question(samples, languages) {
   const found = exampleOf(samples, languages);
-  if (!found) return null;
-  const button = h(
-    "button",
-    { type: "button", className: "question" },
-    h("b", {}, `Why was a ${MISREAD.expected} read as a ${MISREAD.read}?`),
-    h(
-      "span",
-      {},
-      "This sample clip is recognised wrongly. See what differs, where, and what would have helped.",
-    ),
-  );
-  button.onclick = () => ask(found, button);
-  if (mayWrite() || knownClip(found.sample)) return button;
-  button.disabled = true;
-  return [button, h("p", { className: "dim" }, EXAMPLE_NEEDS_EDIT)];
+  if (!found) return nothing;
+  const able = mayWrite() || knownClip(found.sample);
+  return html`<button
+      type="button"
+      class="question"
+      ?disabled=${!able}
+      @click=${(/** @type {any} */ { currentTarget }) => ask(found, currentTarget)}
+    >
+      <b>Why was a ${MISREAD.expected} read as a ${MISREAD.read}?</b
+      ><span
+        >This sample clip is recognised wrongly. See what differs, where, and what would have
+        helped.</span
+      >
+    </button>
+    ${able ? nothing : html`<p class="dim">${EXAMPLE_NEEDS_EDIT}</p>`}`;
 }
 
 /** Why a reader sees no example, and who can help. */
@@ -168,37 +161,30 @@ export async function showExample() {
  * @param {Sample[]} samples
  * @param {LanguageSummary[]} languages
  */
-function welcome(samples, languages) {
-  return [
-    h("h1", {}, "One demonstration makes a gesture"),
-    firstTake(),
-    h(
-      "ol",
-      { className: "steps" },
-      STEPS.map(([title, text]) => h("li", {}, h("b", {}, title), h("span", {}, text))),
-    ),
-    ...[question(samples, languages)].flat(),
-    h(
-      "div",
-      { className: "welcome-actions" },
-      h(
-        "button",
-        { type: "button", className: "primary", ...WRITES, onclick: () => byId("file").click() },
-        "Choose clips",
-      ),
-      samples.length ? h("span", { className: "dim" }, "or begin with a sample:") : null,
-    ),
-    samples.length ? samplesList(offered(samples)) : null,
-  ];
-}
+const welcome = (samples, languages) =>
+  html`<div>
+    <h1>One demonstration makes a gesture</h1>
+    ${firstTake()}
+    <ol class="steps">
+      ${STEPS.map(([title, text]) => html`<li><b>${title}</b><span>${text}</span></li>`)}
+    </ol>
+    ${question(samples, languages)}
+    <div class="welcome-actions">
+      <button type="button" class="primary" data-writes @click=${() => byId("file").click()}>
+        Choose clips
+      </button>
+      ${samples.length ? html`<span class="dim">or begin with a sample:</span>` : nothing}
+    </div>
+    ${samples.length ? samplesList(offered(samples)) : nothing}
+  </div>`;
 
 /** The panel after the clip on display was deleted elsewhere. */
 const noClip = () =>
-  h(
-    "div",
-    { className: "welcome-none" },
-    h("h1", {}, "No clip is shown"),
-    h("p", { className: "dim" }, "Choose one from the list, or drop another one."),
+  elementOf(
+    html`<div class="welcome-none">
+      <h1>No clip is shown</h1>
+      <p class="dim">Choose one from the list, or drop another one.</p>
+    </div>`,
   );
 
 /** @type {ReturnType<typeof showFrames> | null} */
@@ -222,18 +208,15 @@ function progressPanel(clip) {
         });
   frames = video && showFrames(video);
   frames?.load(api.clips.video(clip));
-  return h(
-    "div",
-    { className: "welcome-progress" },
-    h(
-      "div",
-      { className: "live-pose", style: { "aspect-ratio": `${clip.width} / ${clip.height}` } },
-      video,
-      skeleton(clip.width, clip.height),
-    ),
-    h("h1"),
-    h("progress", { "aria-label": "Progress" }),
-    h("p", { className: "dim", role: "status" }),
+  return elementOf(
+    html`<div class="welcome-progress">
+      <div class="live-pose" .style=${`aspect-ratio: ${clip.width} / ${clip.height}`}>
+        ${video}${skeleton(clip.width, clip.height)}
+      </div>
+      <h1></h1>
+      <progress aria-label="Progress"></progress>
+      <p class="dim" role="status"></p>
+    </div>`,
   );
 }
 
@@ -296,7 +279,7 @@ function contentOf({ clips, uploads, samples, languages, loaded, role }, clip) {
   const revisions = languages.map(({ id, revision }) => id + revision);
   return {
     key: `welcome ${samples.length} ${revisions} ${role}`,
-    panel: () => h("div", {}, welcome(samples, languages)),
+    panel: () => elementOf(welcome(samples, languages)),
   };
 }
 

@@ -4,12 +4,13 @@ import { loadClip } from "../clips/clip-pages.js";
 import { needsTopic, select } from "../clips/clip-store.js";
 import { openTopics } from "../clips/topic-dialog.js";
 import { tabStore } from "../core/browser-store.js";
-import { byId, h, icon, iconButton, reconcile } from "../core/dom.js";
+import { byId } from "../core/dom.js";
 import { bytes, timeLeft } from "../core/format.js";
 import { state, update } from "../core/state.js";
 import { mayWrite, READS_ONLY } from "../core/session.js";
 import { complain, toast } from "../core/toasts.js";
 import { importLanguage } from "../languages/language-store.js";
+import { html, iconButtonOf, iconOf, nothing, render, repeat } from "../templates.js";
 import { offerToJoin } from "./chapters.js";
 import { askForVideo, kindOfJson, needsVideo } from "./keypoint-files.js";
 import { upload as send } from "./tus-upload.js";
@@ -208,45 +209,34 @@ function stage(upload) {
   return `Uploading ${bytes(upload.loaded)} of ${bytes(upload.total)}${left === null ? "" : `, ${timeLeft(left)}`}`;
 }
 
-/**
- * Draw an upload. Its bar is updated in place: a button must not be replaced under the pointer.
- *
- * @param {Upload} upload
- * @param {HTMLElement} [element]
- */
-function draw(upload, element) {
-  const failed = upload.status === "failed";
-  const { key } = upload;
-  if (!failed && element?.dataset.status === upload.status) {
-    /** @type {HTMLElement} */ (element.querySelector(".stage-text")).textContent = stage(upload);
-    /** @type {HTMLProgressElement} */ (element.querySelector("progress")).value = upload.loaded;
-    return element;
-  }
-  const stop = () => (upload.status === "uploading" ? upload.cancel?.() : forget(key));
-  return h(
-    "li",
-    { className: `clip${failed ? " failed" : ""}`, "data-status": upload.status },
-    h("div", { className: "poster blank" }, icon("plus")),
-    h(
-      "div",
-      { className: "clip-text" },
-      h("b", {}, upload.file.name),
-      h("span", { className: "stage-text" }, stage(upload)),
-      failed
-        ? null
-        : h("progress", {
-            max: Math.max(1, upload.total),
-            value: upload.loaded,
-            "aria-label": `Upload of ${upload.file.name}`,
-          }),
-    ),
-    h(
-      "div",
-      { className: "clip-buttons" },
-      failed ? iconButton("retry", `Retry ${upload.file.name}`, () => retry(upload)) : null,
-      iconButton("close", `${failed ? "Dismiss" : "Cancel"} ${upload.file.name}`, stop),
-    ),
-  );
+/** @param {Upload} upload */
+function item(upload) {
+  const { key, status, file, total, loaded } = upload;
+  const failed = status === "failed";
+  const stop = () => (status === "uploading" ? upload.cancel?.() : forget(key));
+  return html`<li class="clip ${failed ? "failed" : ""}" data-status=${status}>
+    <div class="poster blank">${iconOf("plus")}</div>
+    <div class="clip-text">
+      <b>${file.name}</b>
+      <span class="stage-text">${stage(upload)}</span>
+      ${
+        failed
+          ? nothing
+          : html`<progress
+              max=${Math.max(1, total)}
+              value=${loaded}
+              aria-label="Upload of ${file.name}"
+            ></progress>`
+      }
+    </div>
+    <div class="clip-buttons">
+      ${failed ? iconButtonOf("retry", `Retry ${file.name}`, () => retry(upload)) : nothing}${iconButtonOf(
+        "close",
+        `${failed ? "Dismiss" : "Cancel"} ${file.name}`,
+        stop,
+      )}
+    </div>
+  </li>`;
 }
 
 /**
@@ -255,7 +245,10 @@ function draw(upload, element) {
  * @param {State} state
  */
 export function drawUploads({ uploads }) {
-  reconcile(byId("uploads"), uploads, (upload) => upload.key, draw);
+  render(
+    repeat(uploads, ({ key }) => key, item),
+    byId("uploads"),
+  );
 }
 
 /** @type {Map<string | null, (files: Iterable<File>) => unknown>} */
