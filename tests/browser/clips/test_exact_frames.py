@@ -6,6 +6,7 @@ import json
 import os
 import re
 import shutil
+import signal
 import subprocess
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -168,11 +169,13 @@ def test_the_picture_is_that_of_the_wanted_frame_where_durations_are_wrong(
         folder.mkdir()
         options = [argument.format(folder=folder) for argument in arguments]
         environment = {**os.environ, "HOME": str(folder)}
-        browser = subprocess.Popen([executable, *options, address], env=environment)
+        command = [executable, *options, address]
+        # Debian's command is a shell that waits for the browser: both end as one group.
+        browser = subprocess.Popen(command, env=environment, start_new_session=True)
         try:
             assert seen.get(timeout=PATIENCE_SECONDS) == order
         finally:
-            browser.terminate()
+            os.killpg(browser.pid, signal.SIGKILL)
             browser.wait()
 
 

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import Literal
 
 import pytest
-from playwright.sync_api import expect
+from playwright.sync_api import Page, expect
 
 from tests.api.running import Running, client_of
 from tests.browser.accessibility import faults
@@ -45,65 +46,75 @@ def library(server: Running) -> Iterator[Library]:
         yield library_of(server, client, "accessible")
 
 
-@pytest.mark.parametrize("scheme", ["dark", "light"])
-def test_a_recognition_with_its_reasons(open_page: OpenPage, library: Library, scheme: str) -> None:
+SCHEMES: tuple[Literal["dark", "light"], ...] = ("dark", "light")
+
+
+def test_a_recognition_with_its_reasons(open_page: OpenPage, library: Library) -> None:
     query = {**library.address, "recognition": library.recognise("line")}
-    page = open_page(query, scene=False, scheme=scheme)
+    page = open_page(query, scene=False)
     expect(page.get_by_role("region", name="Why")).to_contain_text("'line'")
-    assert faults(page) == []
     assert page.evaluate(ESCAPING) == []
-
-
-@pytest.mark.parametrize("look", ["dark", "light", "sun"])
-def test_every_distance_of_the_table_is_legible(
-    open_page: OpenPage, server: Running, look: str
-) -> None:
-    with client_of(server.address) as client:
-        library = library_of(server, client, f"distances in {look}")
-        # The fainter a cell, the farther the gesture: half-way cells had too little contrast.
-        for shape in ("circle backwards", "corner"):
-            library.add_gesture(shape, add_clip(server, shape, name=f"{shape} in {look}.mp4"))
-        query = {**library.address, "recognition": library.recognise("line")}
-        page = open_page(query, scene=False, scheme=look, size=(1440, 900))
-        if look == "sun":
-            page.get_by_role("button", name="Readable in the sun").click()
-        page.get_by_role("button", name="Show the voters without weight").click()
-        expect(page.locator("#stroke-over")).to_be_visible()
-        cells = page.locator("table[aria-label=Votes] tbody td, .vote-table tbody td")
-        assert (
-            len({cell.evaluate("e => getComputedStyle(e).backgroundColor") for cell in cells.all()})
-            > 3
-        )
+    for scheme in SCHEMES:
+        page.emulate_media(color_scheme=scheme)
         assert faults(page) == []
 
 
-@pytest.mark.parametrize("scheme", ["dark", "light"])
-def test_every_view(open_page: OpenPage, library: Library, scheme: str) -> None:
-    page = open_page(library.address, scene=False, scheme=scheme)
+def test_every_distance_of_the_table_is_legible(open_page: OpenPage, server: Running) -> None:
+    with client_of(server.address) as client:
+        library = library_of(server, client, "distances")
+        # The fainter a cell, the farther the gesture: half-way cells had too little contrast.
+        for shape in ("circle backwards", "corner"):
+            library.add_gesture(shape, add_clip(server, shape, name=f"{shape}.mp4"))
+        query = {**library.address, "recognition": library.recognise("line")}
+        page = open_page(query, scene=False, size=(1440, 900))
+        page.get_by_role("button", name="Show the voters without weight").click()
+        expect(page.locator("#stroke-over")).to_be_visible()
+        for scheme in SCHEMES:
+            page.emulate_media(color_scheme=scheme)
+            check_distances(page)
+        page.emulate_media(color_scheme="dark")
+        page.get_by_role("button", name="Readable in the sun").click()
+        check_distances(page)
+
+
+def check_distances(page: Page) -> None:
+    """Check that distances have shades, all of them legible."""
+    cells = page.locator("table[aria-label=Votes] tbody td, .vote-table tbody td")
+    shades = "cells => new Set(cells.map(e => getComputedStyle(e).backgroundColor)).size"
+    assert cells.evaluate_all(shades) > 3
+    assert faults(page) == []
+
+
+def test_every_view(open_page: OpenPage, library: Library) -> None:
+    page = open_page(library.address, scene=False)
     links = page.get_by_role("navigation", name="Views").get_by_role("link")
     expect(links).to_have_text(list(SHOWN))
     found = {}
     for name, content in SHOWN.items():
         links.get_by_text(name, exact=True).click()
         expect(page.locator(".view:visible").locator(content)).to_be_visible()
-        found[name] = [*faults(page), *page.evaluate(ESCAPING)]
+        found[name] = page.evaluate(ESCAPING)
+        for scheme in SCHEMES:
+            page.emulate_media(color_scheme=scheme)
+            found[name] += faults(page)
     assert found == {name: [] for name in SHOWN}
 
 
-@pytest.mark.parametrize("width", [1440, 1024, 768])
 def test_the_header_stays_while_clips_are_chosen_for_the_test_set(
-    open_page: OpenPage, server: Running, library: Library, width: int
+    open_page: OpenPage, server: Running, library: Library
 ) -> None:
     for number in range(12):
-        add_clip(server, "circle", name=f"to test {width} {number}.mp4")
-    page = open_page(library.address | {"view": "health"}, scene=False, size=(width, 700))
+        add_clip(server, "circle", name=f"to test {number}.mp4")
+    page = open_page(library.address | {"view": "health"}, scene=False)
     page.get_by_role("button", name="Test with clips").click()
     page.locator("summary").filter(has_text="Choose from the").click()
-    # At one moment: the page may draw the list anew at the next.
-    page.get_by_text(f"to test {width} 0.mp4").last.evaluate("row => row.scrollIntoView()")
-    assert page.evaluate(ESCAPING) == []
-    expect(page.get_by_role("navigation", name="Views")).to_be_in_viewport(ratio=1)
-    assert page.evaluate("[scrollY, document.documentElement.scrollHeight]") == [0, 700]
+    for width in (1440, 1024, 768):
+        page.set_viewport_size({"width": width, "height": 700})
+        # At one moment: the page may draw the list anew at the next.
+        page.get_by_text("to test 0.mp4").last.evaluate("row => row.scrollIntoView()")
+        assert page.evaluate(ESCAPING) == []
+        expect(page.get_by_role("navigation", name="Views")).to_be_in_viewport(ratio=1)
+        assert page.evaluate("[scrollY, document.documentElement.scrollHeight]") == [0, 700]
 
 
 def test_every_view_on_a_phone(open_page: OpenPage, library: Library) -> None:
@@ -119,34 +130,40 @@ def test_every_view_on_a_phone(open_page: OpenPage, library: Library) -> None:
     assert max(widths.values()) <= 390, widths
 
 
-@pytest.mark.parametrize("size", [(1280, 800), (390, 844)])
-def test_what_the_views_lead_to(
-    open_page: OpenPage, library: Library, size: tuple[int, int]
-) -> None:
-    places = (
+@pytest.mark.parametrize(
+    ("query", "content"),
+    [
         ({"view": "gesture", "gesture": "circle"}, "text=Distance of the nearest gestures"),
-        (
-            {"view": "languages", "panel": "history"},
-            "role=button[name='Go back to revision 2']",
-        ),
-    )
-    for query, content in places:
-        page = open_page({"language": library.language, **query}, scene=False, size=size)
+        ({"view": "languages", "panel": "history"}, "role=button[name='Go back to revision 2']"),
+    ],
+)
+def test_what_the_views_lead_to(
+    open_page: OpenPage, library: Library, query: dict[str, str], content: str
+) -> None:
+    page = open_page({"language": library.language, **query}, scene=False)
+    for width, height in ((1280, 800), (390, 844)):
+        page.set_viewport_size({"width": width, "height": height})
         expect(page.locator(".view:visible").locator(content)).to_be_visible()
         assert faults(page) == []
         assert page.evaluate(ESCAPING) == []
-        assert page.evaluate("document.documentElement.scrollWidth") <= size[0]
+        assert page.evaluate("document.documentElement.scrollWidth") <= width
 
 
-@pytest.mark.parametrize("size", [(1440, 900), (390, 844)])
-def test_the_dialogues(open_page: OpenPage, library: Library, size: tuple[int, int]) -> None:
-    page = open_page(library.address, scene=False, size=size)
+def test_the_dialogues(open_page: OpenPage, library: Library) -> None:
+    page = open_page(library.address, scene=False)
     page.keyboard.press("?")
     expect(page.get_by_role("dialog")).to_be_visible()
-    assert faults(page) == []
+    check_sizes(page)
     page.keyboard.press("Escape")
     page.get_by_role("button", name="Export").click()
     export = page.get_by_role("dialog", name="Export")
     export.get_by_text("What the robot needs").click()
     expect(export.get_by_role("term").first).to_have_text("Keypoints")
-    assert faults(page) == []
+    check_sizes(page)
+
+
+def check_sizes(page: Page) -> None:
+    """Check what is open at the width of a phone and of a screen."""
+    for width, height in ((390, 844), (1440, 900)):
+        page.set_viewport_size({"width": width, "height": height})
+        assert faults(page) == []
