@@ -5,7 +5,6 @@ import { h } from "../core/dom.js";
 import { percent, timeLeft } from "../core/format.js";
 import { follow, state } from "../core/state.js";
 import { toast } from "../core/toasts.js";
-import { uniqueId } from "../core/unique-id.js";
 import { html, ifDefined, render } from "../templates.js";
 
 /** @import { ExportProgress } from "../core/types.d.ts" */
@@ -86,7 +85,7 @@ const advance = (box, progress, cancel) =>
  */
 async function run(box, clip) {
   const leaving = new AbortController();
-  const name = uniqueId();
+  const name = api.uniqueId();
   /** @param {ExportProgress | null} progress */
   const draw = (progress) => advance(box, progress, () => leaving.abort());
   running.set(name, draw);

@@ -46,11 +46,13 @@ const at = (path, query) => ({ params: { path, query: /** @type {Q} */ (query) }
  * The address of a language that a change was made from; any other revision is refused.
  *
  * @template [Q=undefined]
+ * @template [P={}]
  * @param {{ id: string, revision?: number }} language
  * @param {Q} [query]
+ * @param {P} [path] what else the path names
  */
-const from = ({ id, revision }, query) => ({
-  ...at({ language_id: id }, query),
+const from = ({ id, revision }, query, path) => ({
+  ...at({ language_id: id, .../** @type {P} */ (path) }, query),
   headers: revision === undefined ? {} : { "If-Match": `"${revision}"` },
 });
 
@@ -256,12 +258,12 @@ export const languages = {
   addDemonstration: (language, body) =>
     answer(POST("/languages/{language_id}/demonstrations", { ...from(language), body })),
   /** @param {Revised} language @param {string} label @param {number} index */
-  removeDemonstration: ({ id, revision }, label, index) =>
+  removeDemonstration: (language, label, index) =>
     answer(
-      DELETE("/languages/{language_id}/demonstrations/{index}", {
-        ...at({ language_id: id, index }, { label }),
-        headers: from({ id, revision }).headers,
-      }),
+      DELETE(
+        "/languages/{language_id}/demonstrations/{index}",
+        from(language, { label }, { index }),
+      ),
     ),
   /** @param {string} language_id @param {Schemas["TakeTableRequest"]} body @param {AbortSignal} signal */
   takeTable: (language_id, body, signal) =>
@@ -277,6 +279,8 @@ export const languages = {
   exportUrl: (language, format) => `${BASE}/languages/${escaped(language)}/export?format=${format}`,
 };
 
+const TESTED = "/languages/{language_id}/test-set/{take_id}";
+
 export const testSets = {
   /** @param {string} language_id */
   get: (language_id) => answer(GET("/languages/{language_id}/test-set", at({ language_id }))),
@@ -285,15 +289,9 @@ export const testSets = {
     answer(POST("/languages/{language_id}/test-set", { ...at({ language_id }), body: { takes } })),
   /** @param {string} language_id @param {string} take_id @param {Schemas["LabelledTakeChange"]} body */
   label: (language_id, take_id, body) =>
-    answer(
-      PATCH("/languages/{language_id}/test-set/{take_id}", {
-        ...at({ language_id, take_id }),
-        body,
-      }),
-    ),
+    answer(PATCH(TESTED, { ...at({ language_id, take_id }), body })),
   /** @param {string} language_id @param {string} take_id */
-  remove: (language_id, take_id) =>
-    answer(DELETE("/languages/{language_id}/test-set/{take_id}", at({ language_id, take_id }))),
+  remove: (language_id, take_id) => answer(DELETE(TESTED, at({ language_id, take_id }))),
   /** @param {string} language_id */
   run: (language_id) => answer(POST("/languages/{language_id}/test-set/run", at({ language_id }))),
   /** @param {string} language_id */
@@ -301,7 +299,8 @@ export const testSets = {
     answer(DELETE("/languages/{language_id}/test-set/run", at({ language_id }))),
 };
 
-const RECEIVED = "/languages/{language_id}/invitations/{invitation_id}/takes/{take_id}";
+const INVITATION = "/languages/{language_id}/invitations/{invitation_id}";
+const RECEIVED = `${INVITATION}/takes/{take_id}`;
 
 export const invitations = {
   /** @param {string} language_id */
@@ -311,12 +310,7 @@ export const invitations = {
     answer(POST("/languages/{language_id}/invitations", { ...at({ language_id }), body })),
   /** @param {string} language_id @param {string} invitation_id */
   withdraw: (language_id, invitation_id) =>
-    answer(
-      DELETE(
-        "/languages/{language_id}/invitations/{invitation_id}",
-        at({ language_id, invitation_id }),
-      ),
-    ),
+    answer(DELETE(INVITATION, at({ language_id, invitation_id }))),
   /** @param {string} language_id @param {string} invitation_id @param {string} take_id */
   outlook: (language_id, invitation_id, take_id) =>
     answer(GET(RECEIVED, at({ language_id, invitation_id, take_id }))),
@@ -366,3 +360,10 @@ export const workspaces = {
 
 /** Follow everything that changes on the server. */
 export const changes = () => new EventSource(`${BASE}/events`);
+
+/**
+ * A name, unique across tabs, for a task that the page starts on the server: its progress comes as
+ * events of that name. Over plain HTTP browsers have no `crypto.randomUUID`.
+ */
+export const uniqueId = () =>
+  Array.from(crypto.getRandomValues(new Uint32Array(4)), String).join("-");

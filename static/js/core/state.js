@@ -2,34 +2,37 @@
 
 /** @import { Clip, Language, SelectedRange, State } from "./types.d.ts" */
 
-/** @type {Record<string, string>} */
-const IN_URL = {
-  view: "view",
-  source: "source",
-  clip: "clip",
-  take: "take",
-  start: "start",
-  end: "end",
-  frame: "frame",
-  language: "language",
-  gesture: "gesture",
-  recognition: "recognition",
-  joint: "joint",
-  panel: "panel",
-  older: "older",
-  newer: "newer",
-  pair: "pair",
-  cell: "cell",
-  phrase: "phrase",
-  shown: "shown",
-  paused: "paused",
-};
+/**
+ * The values that a link restores.
+ *
+ * @type {(keyof State)[]}
+ */
+const IN_URL = [
+  "view",
+  "source",
+  "clip",
+  "take",
+  "start",
+  "end",
+  "frame",
+  "language",
+  "gesture",
+  "recognition",
+  "joint",
+  "panel",
+  "older",
+  "newer",
+  "pair",
+  "cell",
+  "phrase",
+  "shown",
+  "paused",
+];
 const NUMBERS = new Set(["take", "start", "end", "frame", "older", "newer"]);
 
 /** @type {State} */
 const values = {
-  view: null,
-  source: null,
+  .../** @type {any} */ (Object.fromEntries(IN_URL.map((name) => [name, null]))),
   clips: [],
   library: { last: null, older: 0 },
   uploads: [],
@@ -38,7 +41,6 @@ const values = {
   samples: [],
   timeline: null,
   position: null,
-  frame: null,
   languages: [],
   gestures: null,
   result: null,
@@ -61,22 +63,6 @@ const values = {
   labelled: null,
   pending: [],
   ranges: [],
-  clip: null,
-  take: null,
-  start: null,
-  end: null,
-  language: null,
-  gesture: null,
-  recognition: null,
-  joint: null,
-  panel: null,
-  older: null,
-  newer: null,
-  pair: null,
-  cell: null,
-  phrase: null,
-  shown: null,
-  paused: null,
 };
 
 /** @type {{ names: (keyof State)[], react: (state: State) => void }[]} */
@@ -100,7 +86,8 @@ export function update(change) {
   if (!changed.length) return;
   Object.assign(values, change);
   // Only another view makes an entry in the browser's history.
-  if (!returning && changed.some((name) => name in IN_URL)) writeUrl(changed.includes("view"));
+  if (!returning && changed.some((name) => IN_URL.includes(name)))
+    writeUrl(changed.includes("view"));
   for (const { names, react } of listeners)
     if (names.some((name) => changed.includes(name))) react(values);
 }
@@ -133,8 +120,8 @@ export function readUrl() {
   const query = new URLSearchParams(location.search);
   /** @type {Record<string, string | number | null>} */
   const change = {};
-  for (const [name, key] of Object.entries(IN_URL)) {
-    const text = query.get(key);
+  for (const name of IN_URL) {
+    const text = query.get(name);
     const number = Number.parseFloat(text ?? "");
     if (!NUMBERS.has(name)) change[name] = text;
     else change[name] = Number.isFinite(number) ? number : null;
@@ -154,10 +141,10 @@ export function followHistory() {
 /** @param {boolean} another */
 function writeUrl(another) {
   const query = new URLSearchParams();
-  for (const [name, key] of Object.entries(IN_URL)) {
+  for (const name of IN_URL) {
     const value = /** @type {any} */ (values)[name];
     if (value !== null && value !== undefined)
-      query.set(key, NUMBERS.has(name) ? String(Math.round(value * 1000) / 1000) : value);
+      query.set(name, NUMBERS.has(name) ? String(Math.round(value * 1000) / 1000) : value);
   }
   const text = query.toString();
   const url = text ? `?${text}` : location.pathname;

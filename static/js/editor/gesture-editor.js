@@ -176,16 +176,16 @@ function changed() {
 }
 
 /**
+ * @param {Editor} shown the one that asked, which may be closed by now
  * @param {Preview} found
  * @param {Outlook | null} estimate
  */
-function showPreview(found, estimate) {
-  if (!editor) return;
-  const before =
-    estimate && !isChanged() && editor.about.gesture !== null ? estimate : editor.before;
-  Object.assign(editor, { preview: found, estimate, before });
-  editor.newest = estimate ?? editor.newest;
-  editor.drawing = found.image || editor.drawing;
+function showPreview(shown, found, estimate) {
+  if (editor !== shown) return;
+  if (estimate && !isChanged() && shown.about.gesture !== null) shown.before = estimate;
+  Object.assign(shown, { preview: found, estimate });
+  shown.newest = estimate ?? shown.newest;
+  shown.drawing = found.image || shown.drawing;
   draw();
 }
 
@@ -201,11 +201,15 @@ function build(about) {
   const drawn = gesture !== null && !gestureOf(about).has_trajectory;
   const place = placeOf(language.id, gesture ?? `new ${state.clip}`);
   const kept = begin(place, valuesOf(about), changed);
-  editor = {
+  /** @type {Editor} */
+  const shown = {
     about,
     drawn,
     take: take({ language: language.id, gesture, drawn, pick }),
-    ask: previewing({ shown: showPreview, failed: (error) => complain(error, "The preview") }),
+    ask: previewing({
+      shown: (found, estimate) => showPreview(shown, found, estimate),
+      failed: (error) => complain(error, "The preview"),
+    }),
     listed: { all: false, refused: false },
     preview: null,
     drawing: null,
@@ -215,6 +219,7 @@ function build(about) {
     kept,
     problem: "",
   };
+  editor = shown;
   render("", root); // Nothing of another gesture stays, such as what is unfolded.
   // The clip of a kept draft may have been deleted.
   if (draft().clip && !isThere(draft().clip)) change({ clip: saved().clip });

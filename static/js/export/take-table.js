@@ -5,10 +5,10 @@ import { olderClipsButton } from "../clips/older-clips.js";
 import { saveFile } from "../clips/mcap-export.js";
 import { select } from "../clips/clip-store.js";
 import * as api from "../core/api.js";
+import { closeDialog, showDialog } from "../core/dialogs.js";
 import { byId, h } from "../core/dom.js";
 import { moment, percent, plural, timeLeft } from "../core/format.js";
 import { follow, state, update } from "../core/state.js";
-import { uniqueId } from "../core/unique-id.js";
 import { shownRows, sortedRows } from "./take-rows.js";
 
 /** @import { ExportProgress, State, TakeRow, TakeTable } from "../core/types.d.ts" */
@@ -53,7 +53,7 @@ function advance(progress) {
  * @param {TakeRow} row
  */
 function jump(row) {
-  byId("dialog").close();
+  closeDialog();
   select(row.clip_id);
   update({ take: row.take === null ? null : row.take - 1, start: null, end: null });
 }
@@ -205,12 +205,11 @@ function clipChoice() {
 export function openTakeTable() {
   const language = state.gestures;
   if (!language) return;
-  const dialog = byId("dialog");
   const leaving = new AbortController();
   const { element, chosen } = clipChoice();
   const content = h("div", { className: "take-content" }, element);
   const start = h("button", { type: "submit", className: "primary" }, "Recognise all takes");
-  const close = h("button", { type: "button", onclick: () => dialog.close() }, "Close");
+  const close = h("button", { type: "button", onclick: closeDialog }, "Close");
   const fail = (/** @type {string} */ text) =>
     content.replaceChildren(element, h("p", { className: "field-problem", role: "alert" }, text));
   const recognise = async () => {
@@ -218,7 +217,7 @@ export function openTakeTable() {
     if (!clips.length) return fail("No clip is chosen; choose one whose takes are recognised.");
     const bar = h("progress", { "aria-label": "Progress of the table" });
     const words = h("p", { role: "status" }, "Recognising");
-    const id = uniqueId();
+    const id = api.uniqueId();
     running = { id, bar, words };
     content.replaceChildren(words, bar);
     start.hidden = true;
@@ -251,10 +250,7 @@ export function openTakeTable() {
     event.preventDefault();
     if (!start.hidden) recognise();
   };
-  dialog.replaceChildren(form);
-  dialog.setAttribute("aria-labelledby", "dialog-title");
-  dialog.onclose = () => leaving.abort();
-  dialog.showModal();
+  showDialog(form, () => leaving.abort());
   start.focus();
 }
 

@@ -171,7 +171,6 @@ function drawExpected(members, result) {
  * @param {string} label
  */
 export function focusCard(label) {
-  const cards = /** @type {HTMLElement[]} */ ([...byId("gestures").children]);
-  const card = cards.find(({ dataset }) => dataset.key === label);
-  (card?.querySelector("button") ?? byId("stage")).focus({ preventScroll: true });
+  const button = byId("gestures").querySelector(`[data-key="${CSS.escape(label)}"] button`);
+  (button ?? byId("stage")).focus({ preventScroll: true });
 }

@@ -12,7 +12,6 @@ import { plural } from "../core/format.js";
 import { follow, state } from "../core/state.js";
 import { limit } from "../core/text-limit.js";
 import { complain } from "../core/toasts.js";
-import { uniqueId } from "../core/unique-id.js";
 import { showDone } from "../core/undo.js";
 import { begin, choose } from "../languages/language-store.js";
 import { edit } from "../languages/revision-edit.js";
@@ -108,7 +107,7 @@ async function read() {
   const asked = table;
   const { signal } = asked.leaving;
   const found = await api.languages
-    .takeTable(language.id, { id: uniqueId(), clip_ids: clips }, signal)
+    .takeTable(language.id, { id: api.uniqueId(), clip_ids: clips }, signal)
     .catch(() => null);
   if (!found || asked.reads !== reads) return;
   asked.readings = new Map(

@@ -1,17 +1,16 @@
 // The recognitions of the live view: the newest one large, the others in a list.
 
-import { byId, h } from "../core/dom.js";
-import { askWhich, moment } from "../core/format.js";
+import { byId } from "../core/dom.js";
+import { askWhich, moment, percent } from "../core/format.js";
 import { endName } from "../clips/salutes.js";
 import { state } from "../core/state.js";
 import { go } from "../core/views.js";
+import { elementOf, html, nothing, render } from "../templates.js";
 
 /** @import { Clip } from "../core/types.d.ts" */
 /** @import { Recognized } from "../camera/live-messages.d.ts" */
 
 const MOST = 50; // in the list; a practice session has fewer.
-
-const percent = (/** @type {number} */ share) => `${Math.round(100 * share)} %`;
 
 /** @param {Recognized} result */
 function verdict(result) {
@@ -50,31 +49,24 @@ function entry(result, clip, clock) {
     frame: null,
     recognition: null,
   };
-  return h(
-    "li",
-    { className: lookOf(result) },
-    h("b", {}, title),
-    h(
-      "span",
-      {},
-      clip ? moment(result.start) : clock,
-      result.closed ? "" : `, no closing ${endName(state.gestures)}`,
-      " \u00b7 ",
-      text,
-    ),
-    clip
-      ? h(
-          "button",
-          {
-            type: "button",
-            className: "link",
-            "aria-label": `Open ${title} at ${moment(result.start)} in the studio`,
-            onclick: () => go("studio", range),
-          },
-          "Open",
-        )
-      : null,
-  );
+  const open = html`<button
+    type="button"
+    class="link"
+    aria-label="Open ${title} at ${moment(result.start)} in the studio"
+    @click=${() => go("studio", range)}
+  >
+    Open
+  </button>`;
+  return html`<li class=${lookOf(result)}>
+    <b>${title}</b>
+    <span
+      >${clip ? moment(result.start) : clock}${
+        result.closed ? "" : `, no closing ${endName(state.gestures)}`
+      }
+      · ${text}</span
+    >
+    ${clip ? open : nothing}
+  </li>`;
 }
 
 /**
@@ -87,15 +79,19 @@ export function addResult(result, clip) {
   const { title, text } = verdict(result);
   const box = byId("live-result");
   box.className = `live-result ${lookOf(result)}`;
-  box.replaceChildren(
-    h("strong", {}, title),
-    result.label === null
-      ? ""
-      : h("meter", { min: 0, max: 1, value: result.confidence ?? 0, "aria-label": "Confidence" }),
-    h("p", {}, text),
+  const meter = html`<meter
+    min="0"
+    max="1"
+    value=${result.confidence ?? 0}
+    aria-label="Confidence"
+  ></meter>`;
+  render(
+    html`<strong>${title}</strong>${result.label === null ? nothing : meter}
+      <p>${text}</p>`,
+    box,
   );
   const list = byId("live-recognised");
-  list.prepend(entry(result, clip, new Date().toLocaleTimeString()));
+  list.prepend(elementOf(entry(result, clip, new Date().toLocaleTimeString())));
   while (list.children.length > MOST) list.lastChild?.remove();
   byId("live-clear").hidden = false;
 }
@@ -111,12 +107,12 @@ export function showNothingRecognised(clip, rate) {
     rate === null
       ? "No frame of it could be looked at in time"
       : `${rate.toFixed(1)} frames a second of it were looked at`;
-  byId("live-result").replaceChildren(
-    h(
-      "p",
-      {},
-      `Nothing was recognised in ${clip.name}. ${looked}; tick \u201cEvery frame\u201d and play it again to miss none.`,
-    ),
+  render(
+    html`<p>
+      Nothing was recognised in ${clip.name}. ${looked}; tick “Every frame” and play it again to
+      miss none.
+    </p>`,
+    byId("live-result"),
   );
 }
 
@@ -130,5 +126,5 @@ export function clearResults(text) {
   byId("live-clear").hidden = true;
   const box = byId("live-result");
   box.className = "live-result nothing";
-  box.replaceChildren(h("p", {}, text));
+  render(html`<p>${text}</p>`, box);
 }

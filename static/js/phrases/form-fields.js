@@ -24,9 +24,8 @@ import {
  * @property {boolean} [hidden] whether the label is for screen readers only
  * @property {number} [most] code points
  * @property {string} [placeholder]
+ * @property {{ min: number, max: number, step: number | "any" }} [number] what a number may be
  */
-
-/** @typedef {{ id: string, label: string, value: string, min: number, max: number, step?: number | "any", commit: (text: string) => unknown }} NumberField */
 
 /** @typedef {HTMLInputElement | HTMLTextAreaElement} Input */
 
@@ -96,7 +95,7 @@ const line = (id, label, hidden, input) =>
 
 /** @param {TextField} field */
 export function textField({ id, label, value, commit, multiline, hidden = false, ...more }) {
-  const { most = Number.POSITIVE_INFINITY, placeholder } = more;
+  const { most = Number.POSITIVE_INFINITY, placeholder, number } = more;
   const left = (/** @type {any} */ { target }) => leave(target, commit);
   const pressed = (/** @type {any} */ event) => press(event, commit);
   const input = multiline
@@ -113,11 +112,15 @@ export function textField({ id, label, value, commit, multiline, hidden = false,
         ${limited(most)}
       ></textarea>`
     : html`<input
-        type="text"
+        type=${number ? "number" : "text"}
         id=${id}
         data-writes
         autocomplete="off"
         placeholder=${ifDefined(placeholder)}
+        min=${ifDefined(number?.min)}
+        max=${ifDefined(number?.max)}
+        step=${ifDefined(number?.step)}
+        inputmode=${ifDefined(number && (number.step === 1 ? "numeric" : "decimal"))}
         .value=${textOf(id, value)}
         .defaultValue=${live(value)}
         @blur=${left}
@@ -126,28 +129,6 @@ export function textField({ id, label, value, commit, multiline, hidden = false,
       />`;
   return line(id, label, hidden, input);
 }
-
-/** @param {NumberField} field */
-export const numberField = ({ id, label, value, min, max, step = 1, commit }) =>
-  line(
-    id,
-    label,
-    false,
-    html`<input
-      type="number"
-      id=${id}
-      data-writes
-      autocomplete="off"
-      inputmode=${step === 1 ? "numeric" : "decimal"}
-      min=${min}
-      max=${max}
-      step=${step}
-      .value=${textOf(id, value)}
-      .defaultValue=${live(value)}
-      @blur=${(/** @type {any} */ { target }) => leave(target, commit)}
-      @keydown=${(/** @type {any} */ event) => press(event, commit)}
-    />`,
-  );
 
 /**
  * A labelled choice among `options`, each `[value, text]`.

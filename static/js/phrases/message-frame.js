@@ -1,7 +1,7 @@
 // The panel of a message's frame: gestures that open, close and cancel it, and the longest pause.
 
 import { asOptions, html } from "../templates.js";
-import { choice, numberField } from "./form-fields.js";
+import { choice, textField } from "./form-fields.js";
 import { grammar, labels, save } from "./grammar-store.js";
 
 /** @import { Role } from "./grammar-edits.js" */
@@ -40,20 +40,17 @@ export function framePanel() {
       A message may hold several phrases, each with its own opening gesture.
     </p>
     <div class="frame-fields">
-      ${role("start")}${role("end")}${role("cancel")}${numberField({
+      ${role("start")}${role("end")}${role("cancel")}${textField({
         id: "frame-timeout",
         label: "Longest pause (s)",
         value: String(timeout),
-        min: 1,
-        max: 600,
-        step: "any",
+        number: { min: 1, max: 600, step: "any" },
         commit: (text) => save("Longest pause", (base) => ({ ...base, timeout: Number(text) })),
-      })}${numberField({
+      })}${textField({
         id: "frame-most",
         label: "Phrases, at most",
         value: String(most),
-        min: 1,
-        max: 8,
+        number: { min: 1, max: 8, step: 1 },
         commit: (text) =>
           save("Phrases in one message", (base) => ({ ...base, most_phrases: Number(text) })),
       })}

@@ -1,7 +1,7 @@
 // The form of a phrase's parts: gestures, slots, and groups of both.
 
 import { asOptions, html, nothing } from "../templates.js";
-import { addButton, checkbox, choice, numberField, textField, tool } from "./form-fields.js";
+import { addButton, checkbox, choice, textField, tool } from "./form-fields.js";
 import {
   gesturePart,
   inPart,
@@ -187,12 +187,11 @@ function partRow(phrase, path, part, count) {
             least: on ? 0 : 1,
             ...("slot" in part ? { default: null } : {}),
           }),
-      })}${numberField({
+      })}${textField({
         id: `${id}-most`,
         label: "up to",
         value: String(part.most),
-        min: 1,
-        max: 10,
+        number: { min: 1, max: 10, step: 1 },
         commit: times,
       })}<span class="dim"
         >${part.least > 1 ? `times, at least ${part.least}` : part.most > 1 ? "times" : "time"}</span

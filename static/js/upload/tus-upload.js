@@ -25,14 +25,7 @@ const keyOf = ({ name, size, lastModified }) => `osg-studio.upload.${size}.${las
  * @param {File} file
  * @param {string | null} place
  */
-function keep(file, place) {
-  browserStore.set(keyOf(file), place);
-}
-
-/** @param {File} file */
-function kept(file) {
-  return browserStore.get(keyOf(file));
-}
+const keep = (file, place) => browserStore.set(keyOf(file), place);
 
 /**
  * @param {string} method
@@ -97,7 +90,7 @@ async function begin(file, fields) {
  * @param {Record<string, string>} fields
  */
 async function resume(file, fields) {
-  const place = kept(file);
+  const place = browserStore.get(keyOf(file));
   if (!place) return begin(file, fields);
   try {
     return standOf(place, await ask("HEAD", place));
@@ -119,15 +112,10 @@ async function resume(file, fields) {
 function send(call, file, { place, offset }, onProgress) {
   const sent = new Promise((resolve, reject) => {
     call.upload.onprogress = ({ loaded }) => onProgress(offset + loaded);
-    call.onload = () => {
+    call.onload = async () => {
       if (call.status < 300)
         return resolve(standOf(place, { get: (name) => call.getResponseHeader(name) }));
-      let problem = {};
-      try {
-        problem = JSON.parse(call.responseText);
-      } catch {
-        /* a proxy's own error page */
-      }
+      const problem = await problemOf(new Response(call.responseText));
       return reject(new ApiError(problem, call.status));
     };
     call.onerror = () => reject(unreachable());
