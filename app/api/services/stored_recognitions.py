@@ -10,6 +10,7 @@ from typing import Any
 from app import store
 from app.api.http.schemas.recognitions import GestureTrial, RecognitionRequest, RecognitionView
 from app.api.services.clip_responses import shows_pictures
+from app.api.services.clip_takes import find_takes
 from app.api.services.demonstration_faults import faults_of_language
 from app.api.services.demonstration_sources import LeftOut, OwnDemonstrations, find_sources
 from app.api.services.gesture_edits import change_gesture_of, demonstration_at
@@ -111,6 +112,10 @@ def load_context(record: store.RecognitionRecord, studio: Studio) -> Recognition
         whole=find_surroundings(recording, record.start, record.end, language.trigger),
         known=tuple(load_known(studio, record.language_id, recognizer, but=record.clip_id)),
         faults=faults_of_language(studio, language, find_sources(studio, language)),
+        closed=not any(
+            not take.closed and min(take.end, record.end) > max(take.start, record.start)
+            for take in find_takes(studio, record.clip_id, state, so_far=True)
+        ),
         recorded=load_recognition(record),
     )
 

@@ -121,6 +121,8 @@ class RecognitionContext:
         Other takes whose gesture is known, by which remedies are judged.
     faults
         By label the known faults of each of the gesture's demonstrations.
+    closed
+        Whether the take has an end: one without is never offered as a demonstration.
     recorded
         The result as it was answered, which then stands for a new one; None: none was.
 
@@ -131,12 +133,15 @@ class RecognitionContext:
     whole: PoseSequence
     known: tuple[KnownTake, ...] = ()
     faults: Mapping[str, Sequence[tuple[DemonstrationFault, ...]]] = field(default_factory=dict)
+    closed: bool = True
     recorded: Recognition | None = None
 
     @classmethod
     def of_take(cls, recognizer: Recognizer, take: Take) -> RecognitionContext:
         """Return the context of recognising a take."""
-        return cls(recognizer=recognizer, poses=take.poses, whole=take.untrimmed)
+        return cls(
+            recognizer=recognizer, poses=take.poses, whole=take.untrimmed, closed=take.closed
+        )
 
     @property
     def language(self) -> Language:

@@ -166,6 +166,14 @@ class Counterfactual:
     effect: LanguageEffect | None
 
     @property
+    def repairs_no_other(self) -> bool:
+        """Whether it makes this take a demonstration, and repairs none of the known takes."""
+        effect, kind = self.effect, self.change.kind
+        if kind != "further_demonstration" or effect is None or not effect.takes:
+            return False
+        return effect.repaired <= effect.broken
+
+    @property
     def rank(self) -> tuple[bool, int, int, float, float]:
         """The sort key: what repairs most known takes first, what does harm last.
 
@@ -227,7 +235,11 @@ def find_counterfactuals(
                 best[change.kind] = min(first, found, key=lambda each: each.rank)
                 break
     kept = [each for each in best.values() if each.effect is None or not each.effect.lost]
-    return tuple(sorted(kept, key=lambda each: each.rank)), tried
+    ranked = sorted(kept, key=lambda each: each.rank)
+    # A take that becomes a demonstration is right by itself: alone that is no remedy.
+    if ranked and ranked[0].repairs_no_other:
+        ranked = []
+    return tuple(ranked), tried
 
 
 def _verify(
@@ -332,7 +344,7 @@ def _gestures(context: RecognitionContext, expected: str) -> Iterator[list[Inter
         if gesture.trajectory is not None and isinstance(context.recognizer.vote, FusedVote):
             yield from _switches(context, label, expected=label == expected)
     shown = context.language.gesture(expected).single_demonstrations()
-    if len(shown) < MAX_DEMONSTRATIONS:
+    if context.closed and len(shown) < MAX_DEMONSTRATIONS:
         values = {"label": expected}
         yield [Intervention("further_demonstration", 1 / (len(shown) + 1), values)]
 

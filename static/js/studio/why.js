@@ -135,6 +135,12 @@ export function drawCosts({ why, result, timeline }) {
   );
 }
 
+/** @param {SideEffect} effect */
+const effectOnOthers = ({ takes, repaired, broken }) =>
+  repaired || broken
+    ? `repairs ${repaired}, breaks ${broken} of ${takes} other takes`
+    : "repairs no other take";
+
 /**
  * The effect of an intervention on other takes whose gesture is known.
  *
@@ -145,9 +151,7 @@ const effectOf = (effect) =>
   h(
     "small",
     { className: "dim num" },
-    effect.takes
-      ? `of ${effect.takes} other takes repairs ${effect.repaired}, breaks ${effect.broken}`
-      : "untested: no other takes are known",
+    effect.takes ? effectOnOthers(effect) : "untested: no other takes are known",
   );
 
 /**

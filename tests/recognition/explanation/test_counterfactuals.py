@@ -180,19 +180,24 @@ def test_each_turns_the_recognition_right_when_applied(profile: str) -> None:
         assert after.confidence == each.confidence
 
 
-def test_this_take_as_demonstration_comes_last_with_what_it_does_to_real_takes() -> None:
+def test_this_take_as_demonstration_is_offered_where_it_repairs_other_takes() -> None:
     shapes = drawn_recognizer("full")
     query = recording(SHAPES["square"], jitter=0.005)
-    known = tuple(
+    read = tuple(
         KnownTake(label, shapes.query(recording(SHAPES[label], jitter=0.01, seed=seed)))
         for label in ("circle", "line")
         for seed in range(2)
     )
-    made = RecognitionContext(recognizer=shapes, poses=query, whole=query, known=known)
+    misread = KnownTake("line", shapes.query(recording(SHAPES["square"], jitter=0.01)))
+    made = RecognitionContext(recognizer=shapes, poses=query, whole=query, known=(*read, misread))
     *_, last = find_counterfactuals(made, "line")[0]
     assert last.change.kind == "further_demonstration"
     assert last.effect is not None
-    assert (last.effect.takes, last.effect.repaired, last.effect.broken) == (4, 0, 0)
+    assert (last.effect.takes, last.effect.repaired, last.effect.broken) == (5, 1, 0)
+    # It is right by itself: that repairs nothing.
+    assert find_counterfactuals(replace(made, known=read), "line")[0] == ()
+    # Without an end it may be no gesture at all.
+    assert find_counterfactuals(replace(made, closed=False), "line")[0] == ()
 
 
 def test_a_bad_demonstration_is_cut_first() -> None:
