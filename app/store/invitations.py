@@ -194,11 +194,15 @@ class InvitationStore(DatabaseStore):
             )
             return claimed.rowcount == 1
 
-    def settle(self, take_id: str, status: str, reason: str | None = None) -> None:
-        """Keep the status of a take, and its reason."""
+    def settle(
+        self, take_id: str, status: str, reason: str | None = None, *, arrived: bool = True
+    ) -> None:
+        """Keep the status of a take, and its reason; one that has not `arrived` does not count."""
         with self._database.writing() as session:
             if (take := session.get(InvitedTake, take_id)) is not None:
                 take.status, take.reason = status, reason
+                if not arrived:
+                    _count(session.get_one(Invitation, take.invitation_id), -1, -take.size)
 
     def ask(self, take_id: str, read_as: str | None, question: str) -> None:
         """Keep that the person who shows is asked about a take, in which `read_as` was read."""

@@ -128,17 +128,22 @@ def _look_at(studio: Studio, identities: Identities, take: store.InvitedTake) ->
     try:
         _judge(studio, identities, take, found)
     except Returned as returned:
-        _settle(studio, take, "returned", str(returned))
+        _settle(studio, take, "returned", str(returned), arrived=found is not None)
     except Doubted as doubted:
         studio.invitations.ask(take.id, doubted.read_as, str(doubted))
         studio.broadcast.publish("clips", id=take.clip_id)
 
 
 def _settle(
-    studio: Studio, take: store.InvitedTake, status: str, reason: str | None = None
+    studio: Studio,
+    take: store.InvitedTake,
+    status: str,
+    reason: str | None = None,
+    *,
+    arrived: bool = True,
 ) -> None:
     """Keep what became of a take, and tell the open pages; a returned one's clip goes."""
-    studio.invitations.settle(take.id, status, reason)
+    studio.invitations.settle(take.id, status, reason, arrived=arrived)
     if status == "returned":
         with suppress(store.NotFound):
             studio.clips.delete(take.clip_id)

@@ -15,7 +15,7 @@ from app.store.models import ANSWER_TIME, now
 from tests.api.invitations import INVITED, client_with, divers_of, invite, show, token_of
 from tests.api.languages import LANGUAGES
 from tests.api.recordings import add_recorded_clip, recording_of
-from tests.api.running import Running, assert_problem
+from tests.api.running import Running, assert_problem, until
 
 pytestmark = pytest.mark.usefixtures("judged_soon")
 
@@ -82,6 +82,19 @@ def test_what_is_not_confirmed_is_returned_and_its_clip_goes(
         studio.clips.get(doubted.clip_id)
     for status in ("added", "removed"):
         assert_problem(client.put(place, json={"status": status}), 409, "take_not_held")
+
+
+def test_a_take_whose_clip_never_came_is_returned_and_does_not_count(
+    studio: Studio, made: dict[str, Any]
+) -> None:
+    take = studio.invitations.receive(made["id"], label="circle", diver="Bo", size=1024)
+    counted = studio.invitations.get(made["id"])
+    assert (counted.takes, counted.bytes) == (1, 1024)
+    with studio.invitations._database.writing() as session:
+        session.execute(update(InvitedTake).values(created=now() - 2 * invited_takes.LOST))
+    until(lambda: studio.invitations.take(made["id"], take.id).status == "returned")
+    after = studio.invitations.get(made["id"])
+    assert (after.takes, after.bytes) == (0, 0)
 
 
 @pytest.mark.parametrize("confirmed", [True, False])
