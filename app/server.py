@@ -34,7 +34,13 @@ from app.api.middleware.access import SameOrigin, TokenRequired
 from app.api.middleware.audit import Audit
 from app.api.middleware.connections import ConnectionGuard
 from app.api.middleware.headers import SecurityHeaders
-from app.api.middleware.request_bodies import AnswerAfterBody, BodyLimit, BodyPace, StrictBodies
+from app.api.middleware.request_bodies import (
+    AnswerAfterBody,
+    BodyLimit,
+    BodyPace,
+    KnownKeys,
+    StrictBodies,
+)
 from app.api.middleware.request_log import RequestLog
 from app.api.middleware.roles import RoleRequired
 from app.api.middleware.safe_paths import SafePaths
@@ -308,6 +314,7 @@ def _guard(app: FastAPI, settings: Settings, metrics: Metrics) -> None:
         f"{API}/languages/import": settings.limits.max_language_bytes,
     }
     app.add_middleware(StrictBodies, most_bytes=settings.limits.max_body_bytes, exceptions=limits)
+    app.add_middleware(KnownKeys, understood=[f"{API}/clips"])
     app.add_middleware(Audit)
     app.add_middleware(SafePaths)
     app.add_middleware(

@@ -27,6 +27,7 @@ MEANINGS = {
     "gesture_needed": "a phrase uses the gesture that should be deleted",
     "gesture_unusable": "the take cannot become a gesture, for instance because nothing moves",
     "idempotency_key_reused": "this `Idempotency-Key` came with another file before",
+    "idempotency_key_unknown": "only `POST /clips` understands an `Idempotency-Key`",
     "internal": "unexpected error; the server's log has the details",
     "take_not_held": "an invited take was returned, or is looked at still: reload the list",
     "take_unusable": "an invited take cannot be a demonstration, for the reason that is given",

@@ -170,6 +170,33 @@ class AnswerAfterBody:
         return await self._app(scope, receive_until_complete, send_after_body)
 
 
+class KnownKeys:
+    """Refuses an ``Idempotency-Key`` where it is not understood: a retry would rely on it in vain.
+
+    Parameters
+    ----------
+    app
+        App that answers.
+    understood
+        Paths whose POST understands the key.
+
+    """
+
+    def __init__(self, app: ASGIApp, understood: Collection[str]) -> None:
+        self._app = app
+        self._understood = frozenset(understood)
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Pass on the request, or refuse it."""
+        is_sent = scope["type"] == "http" and "idempotency-key" in Headers(scope=scope)
+        if is_sent and scope["method"] == "POST" and scope["path"] not in self._understood:
+            known = ", ".join(sorted(self._understood))
+            detail = f"an Idempotency-Key is understood by POST {known} only: leave it out"
+            problem = ProblemError(422, "idempotency_key_unknown", detail)
+            return await problem.response()(scope, receive, send)
+        return await self._app(scope, receive, send)
+
+
 class StrictBodies:
     """Checks JSON bodies while they are received.
 

@@ -132,3 +132,13 @@ def test_of_thirty_thousand_duplicate_keys_twenty_are_named(client: httpx.Client
 
 def test_a_plain_body_passes(client: httpx.Client) -> None:
     assert post(client, '{"name": "pool"}').status_code == 201
+
+
+def test_a_key_against_double_requests_is_refused_where_it_is_not_understood(
+    client: httpx.Client,
+) -> None:
+    key = {"Idempotency-Key": "7f3c"}
+    refused = client.post(LANGUAGES, json={"name": "pool"}, headers=key)
+    assert_problem(refused, 422, "idempotency_key_unknown")
+    assert client.get(LANGUAGES, headers=key).status_code == 200
+    assert client.post("/api/v1/clips", headers=key).json()["code"] != "idempotency_key_unknown"
