@@ -250,7 +250,10 @@ class LabelledTake(_TakeRow, table=True):
 
     end: float
     expected: str = Field(max_length=200)
-    """The label that it should be recognised as."""
+    """The label that it should be recognised as; empty: none of the gestures."""
+    former: str | None = Field(default=None, sa_column=Column(Text))
+    """Digests of the demonstrations of the movement that it shows, as a JSON array, since its
+    gesture got another one; ``None``: it has not."""
     added_by: str = Field(default="", max_length=80, sa_column_kwargs={"server_default": ""})
     """Name of the token that added it; empty: not known, or none is needed."""
     created: datetime = Field(default_factory=now, sa_type=UtcDateTime)

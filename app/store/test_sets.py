@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import json
 from collections import defaultdict
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from sqlalchemy import delete
+from sqlalchemy import delete, update
 from sqlmodel import Session, col, select
 
 from app.store.database import DatabaseStore
@@ -73,6 +74,8 @@ class LabelledTakeStore(DatabaseStore):
     def label(self, language_id: str, take_id: str, expected: str) -> None:
         """Give a take another label, and remove its results, which are for the previous label.
 
+        A take that was set aside counts again.
+
         Raises
         ------
         NotFound
@@ -81,9 +84,23 @@ class LabelledTakeStore(DatabaseStore):
         """
         with self._database.writing() as session:
             take = _load(session, language_id, take_id)
+            take.former = None
             if take.expected != expected:
                 take.expected = expected
                 _forget(session, take_id)
+
+    def set_aside(self, language_id: str, label: str, former: Sequence[str]) -> None:
+        """Set the takes of a gesture aside that show its former movement, by these digests."""
+        with self._database.writing() as session:
+            session.execute(
+                update(LabelledTake)
+                .where(
+                    col(LabelledTake.language_id) == language_id,
+                    col(LabelledTake.expected) == label,
+                    col(LabelledTake.former).is_(None),
+                )
+                .values(former=json.dumps(former))
+            )
 
     def remove(self, language_id: str, take_id: str) -> None:
         """Remove a take and its results.

@@ -66,12 +66,17 @@ def sources_in(studio: Studio, language: Language) -> dict[str, list[SourceView 
     }
 
 
-def find_sources(studio: Studio, language: Language) -> dict[str, list[DemonstrationSource | None]]:
-    """Return the source of every demonstration of a language by label; None if not known."""
-    keys = {
+def digests_of(language: Language) -> dict[str, list[str | None]]:
+    """Return a digest of each demonstration of a language by label; None without a trajectory."""
+    return {
         gesture.label: [_key(each) for each in gesture.single_demonstrations()]
         for gesture in language.gestures
     }
+
+
+def find_sources(studio: Studio, language: Language) -> dict[str, list[DemonstrationSource | None]]:
+    """Return the source of every demonstration of a language by label; None if not known."""
+    keys = digests_of(language)
     known = studio.sources.of({key for row in keys.values() for key in row if key is not None})
     return {
         label: [None if key is None else known.get(key) for key in row]
@@ -84,6 +89,7 @@ class OwnDemonstrations:
 
     def __init__(self, studio: Studio, language: Language) -> None:
         self._language = language
+        self._shown = digests_of(language)
         self._of_clip = defaultdict[str, list[tuple[str, int, DemonstrationSource]]](list)
         for label, row in find_sources(studio, language).items():
             for number, source in enumerate(row):
@@ -97,6 +103,12 @@ class OwnDemonstrations:
             (label, number)
             for label, number, source in self._of_clip.get(clip_id, ())
             if min(end, source.end) - max(start, source.start) > least
+        )
+
+    def show_former(self, expected: str, former: str | None) -> bool:
+        """Return whether a gesture has another movement than one of these digests, as JSON."""
+        return former is not None and {*json.loads(former)}.isdisjoint(
+            self._shown.get(expected, ())
         )
 
     def leave_one(self, expected: str, without: LeftOut) -> bool:

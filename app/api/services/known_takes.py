@@ -53,7 +53,10 @@ def load_known(
     language = recognizer.language
     own, count, apart = OwnDemonstrations(studio, language), 0, set[LeftOut]()
     for take in reversed(list_known(studio, language_id)):
+        former = take.former if isinstance(take, store.LabelledTake) else None
         if take.clip_id == but or take.expected not in language.labels:
+            continue
+        if own.show_former(take.expected, former):
             continue
         if count == MOST_KNOWN_TAKES:
             return

@@ -111,6 +111,7 @@ def list_waiting(
         (tested.take, without)
         for tested, without in found
         if own.leave_one(tested.take.expected, without)
+        and not own.show_former(tested.take.expected, tested.take.former)
         and all(result.revision != revision for result in _list_valid(studio, tested, without))
     ]
 
@@ -119,16 +120,17 @@ def view_test_set(studio: Studio, state: store.LanguageState) -> schemas.TestSet
     """Return the test set of a language, as of its newest revision."""
     own = OwnDemonstrations(studio, studio.language(state))
     takes = [_view(studio, tested, own) for tested in studio.labelled.of(state.record.id)]
+    counting = [take for take in takes if not take.set_aside]
     counted = [(take, take.result) for take in takes if take.testable and take.result is not None]
     labels = dict.fromkeys(
         take.expected
-        for take in takes
+        for take in counting
         if take.expected is not None and (take.result is not None or not take.testable)
     )
     of_none = [result for take, result in counted if take.expected_none]
     gestures = [
         schemas.GestureRateView(
-            label=label, **_rate([each for each in takes if each.expected == label])
+            label=label, **_rate([each for each in counting if each.expected == label])
         )
         for label in labels
     ]
@@ -138,7 +140,7 @@ def view_test_set(studio: Studio, state: store.LanguageState) -> schemas.TestSet
         language_id=state.record.id,
         revision=state.revision.revision,
         takes=takes,
-        overall=schemas.RateView(**_rate(takes)),
+        overall=schemas.RateView(**_rate(counting)),
         gestures=sorted(gestures, key=lambda each: each.rate or 0.0),
         none=schemas.NoneRateView(
             refused=sum(result.right for result in of_none),
@@ -298,7 +300,8 @@ def _view(
     studio: Studio, tested: store.TestedTake, own: OwnDemonstrations
 ) -> schemas.LabelledTakeView:
     take, without = tested.take, _find_own(own, tested.take)
-    is_testable = own.leave_one(take.expected, without)
+    set_aside = own.show_former(take.expected, take.former)
+    is_testable = own.leave_one(take.expected, without) and not set_aside
     results = [
         schemas.LabelledResultView(
             **result.model_dump(exclude={"take_id", "created", "pair"}),
@@ -308,10 +311,11 @@ def _view(
         for result in (_list_valid(studio, tested, without) if is_testable else ())
     ]
     return schemas.LabelledTakeView(
-        **take.model_dump(exclude={"language_id", "created"}),
+        **take.model_dump(exclude={"language_id", "created", "former"}),
         clip=tested.clip,
         demonstration=bool(without),
         testable=is_testable,
+        set_aside=set_aside,
         result=results[0] if results else None,
         before=results[1] if len(results) > 1 else None,
     )

@@ -2700,6 +2700,11 @@ export interface components {
              * @description Whether the language has another demonstration of its gesture; null results otherwise.
              */
             testable: boolean;
+            /**
+             * Set Aside
+             * @description It shows the movement that its gesture had before, and counts for nothing; `PATCH` with its label brings it back.
+             */
+            set_aside: boolean;
             /** @description The newest; null: none yet. */
             result: components["schemas"]["LabelledResultView"] | null;
             /** @description By an older revision than `result`. */

@@ -162,6 +162,16 @@ function notesOf({ fault, demonstration, pair, expected, label, nearest }) {
  * @param {TestedTake} take
  */
 function outcomeOf(take) {
+  if (take.set_aside)
+    return html`<span class="dim">set aside: the gesture has another movement now</span>
+      <button
+        type="button"
+        class="link"
+        data-writes
+        @click=${() => labelTake(take.id, take.expected)}
+      >
+        Count it again
+      </button>`;
   if (!take.testable)
     return html`<span class="dim"
       >cannot be tested:

@@ -68,6 +68,9 @@ class LabelledTakeView(ExpectedGestureView):
     """It is a demonstration of the language, which reads it without that demonstration."""
     testable: bool
     """Whether the language has another demonstration of its gesture; null results otherwise."""
+    set_aside: bool
+    """It shows the movement that its gesture had before, and counts for nothing; `PATCH` with its
+    label brings it back."""
     result: LabelledResultView | None
     """The newest; null: none yet."""
     before: LabelledResultView | None

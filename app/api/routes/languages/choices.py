@@ -16,7 +16,7 @@ from app.api.http.schemas.languages import LanguageView
 from app.api.http.schemas.values import Body, Identifier, Label, View
 from app.api.routes.asked_revisions import CurrentRevision
 from app.api.routes.language_edits import CurrentEdit
-from app.api.services.demonstration_sources import keep_source
+from app.api.services.demonstration_sources import digests_of, keep_source
 from app.api.services.gesture_edits import demonstration_at, gesture_in, gestures_from
 from app.api.services.known_takes import load_known
 from app.api.services.running_studio import CurrentStudio, Studio, computed, edited
@@ -211,7 +211,10 @@ def propose_replacements(
 @router.put("/{language_id}/replacements", responses=problem_responses(404, 409, 412))
 @edited
 def replace_gesture(draft: ReplacementDraft, edit: CurrentEdit) -> LanguageView:
-    """Give a gesture another movement in one revision; label, command and description stay."""
+    """Give a gesture another movement in one revision; label, command and description stay.
+
+    Takes of the test set that show its former movement are set aside.
+    """
     where, shown = draft.demonstration, None
     if where is None:
         sample = edit.studio.samples.movements().get(draft.sample or "")
@@ -222,13 +225,19 @@ def replace_gesture(draft: ReplacementDraft, edit: CurrentEdit) -> LanguageView:
         shown = demonstration_at(edit.studio, where, edit.trigger)
         other = Gesture.from_demonstration(draft.label, shown.poses, diver=where.diver)
 
+    former: list[str] = []
+
     def edit_language(language: Language) -> Language:
         own = gesture_in(language, draft.label)
+        former[:] = filter(None, digests_of(language)[own.label])
         return language.with_changed(
             replace(other, label=own.label, command=own.command, description=own.description)
         )
 
     state = edit.save(f"Change the movement of {draft.label}", edit_language)
+    if former:
+        edit.studio.labelled.set_aside(edit.language_id, draft.label, former)
+    edit.studio.broadcast.publish("test-sets", id=edit.language_id)
     if where is not None and shown is not None:
         keep_source(edit.studio, state, draft.label, where, shown)
     return edit.answer(state)

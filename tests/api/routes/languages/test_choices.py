@@ -135,6 +135,39 @@ def test_a_replacement_keeps_what_the_gesture_means_and_undo_takes_it_back(
     assert back["gestures"][1]["source"] == before["gestures"][1]["source"]
 
 
+def test_takes_of_the_former_movement_are_set_aside_until_undo_or_one_press(
+    client: httpx.Client, studio: Studio, samples: Path, alike: str
+) -> None:
+    shown = [add_recorded_clip(studio, recording_of(shape)) for shape in ("corner", "line")]
+    takes = [
+        {"clip_id": shown[0], "expected": "rounded square"},
+        {"clip_id": shown[1], "expected": "square"},
+    ]
+    tests = f"{alike}/test-set"
+    assert client.post(tests, json={"takes": takes}).status_code == 201
+    before = client.get(alike).json()["revision"]
+
+    def replaced(label: str) -> dict[str, bool]:
+        first = propose(client, alike, label)["replacements"][0]
+        body = {"label": label, "sample": first["sample"], "gesture": first["gesture"]}
+        client.put(f"{alike}/replacements", json=body).raise_for_status()
+        return set_aside()
+
+    def set_aside() -> dict[str, bool]:
+        return {each["expected"]: each["set_aside"] for each in client.get(tests).json()["takes"]}
+
+    assert replaced("rounded square") == {"rounded square": True, "square": False}
+    found = client.post(f"{tests}/run").json()
+    assert (found["overall"]["asked"], found["overall"]["untestable"]) == (1, 0)
+    client.post(f"{alike}/revert", json={"revision": before}).raise_for_status()
+    assert set_aside() == {"rounded square": False, "square": False}
+    assert replaced("rounded square")["rounded square"]
+    take = next(each for each in client.get(tests).json()["takes"] if each["set_aside"])
+    client.patch(f"{tests}/{take['id']}", json={"expected": take["expected"]}).raise_for_status()
+    assert set_aside() == {"rounded square": False, "square": False}
+    assert client.get(tests).json()["waiting"] == 2
+
+
 def test_a_take_of_a_clip_takes_the_place_of_a_gesture(
     client: httpx.Client, studio: Studio, alike: str
 ) -> None:
