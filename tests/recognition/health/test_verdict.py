@@ -9,7 +9,7 @@ from app.recognition.health.verdict import TestedGesture, Verdict
 LABELS = ("circle", "square", "line")
 
 
-def tested(**takes: tuple[int, int]) -> list[TestedGesture]:
+def read_of(**takes: tuple[int, int]) -> list[TestedGesture]:
     return [TestedGesture(label, *counts) for label, counts in takes.items()]
 
 
@@ -33,11 +33,11 @@ def tested(**takes: tuple[int, int]) -> list[TestedGesture]:
 def test_a_language_is_ready_without_errors_and_with_every_gesture_tested(
     errors: int, takes: dict[str, tuple[int, int]], words: str, ready: bool
 ) -> None:
-    verdict = Verdict.of(errors, LABELS, tested(**takes))
+    verdict = Verdict.of(errors, LABELS, read_of(**takes))
     assert (verdict.words, verdict.is_ready) == (words, ready)
     assert verdict.to_dict()["ready"] is ready
 
 
 def test_a_gesture_that_the_language_lacks_does_not_count() -> None:
-    verdict = Verdict.of(0, ("circle",), tested(triangle=(0, 3), circle=(2, 2)))
+    verdict = Verdict.of(0, ("circle",), read_of(triangle=(0, 3), circle=(2, 2)))
     assert verdict.is_ready
