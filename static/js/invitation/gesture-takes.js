@@ -409,15 +409,17 @@ export function showGestures(root, invited, memory) {
     if (wanted) send(entry, file);
   }
 
-  /** Show one gesture after the other before the camera, until all are added. */
+  /** Show the gestures one after the other before the camera, the chosen one first. */
   async function beginHandsFree() {
+    let chosen = TO_SHOW.includes(current.standing) ? current : null;
     actions.replaceChildren();
     step.textContent = "Starting the camera.";
     if (!(await camera.start())) return drawCurrent();
     handsFree = true;
     const awake = await navigator.wakeLock?.request("screen").catch(() => null);
     while (handsFree) {
-      const entry = next();
+      const entry = chosen ?? next();
+      chosen = null;
       if (entry?.standing === "asked") {
         current = entry;
         drawCurrent();
