@@ -31,7 +31,6 @@ from app.cli.robots.run import handle_signals
 from app.recognition.estimation import create_estimator
 from app.recognition.estimation.estimator import PoseEstimator
 from app.recognition.estimation.factory import NO_HANDS
-from app.recognition.estimation.water import WaterCorrection
 from app.recognition.estimation.water_sight import WaterSight
 from app.recognition.recording.extraction import build_frame_sequence
 from app.recognition.recording.people_in_stream import PeopleInStream
@@ -292,8 +291,6 @@ class StageProfiler:
         Estimators without and with hands, otherwise the same.
     listener
         Recognises gestures.
-    water
-        As in `Runtime`.
     meter
         Measures energy.
 
@@ -305,11 +302,10 @@ class StageProfiler:
         whole: PoseEstimator,
         listener: LandmarkListener,
         *,
-        water: WaterCorrection = "auto",
         meter: EnergyMeter | None = None,
     ) -> None:
-        self._body = WaterSight(body, water)
-        self._whole = WaterSight(whole, water)
+        self._body = WaterSight(body, "auto")
+        self._whole = WaterSight(whole, "auto")
         self._people = PeopleInStream()
         self._listener = listener
         self._meter = meter

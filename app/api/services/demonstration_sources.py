@@ -76,7 +76,12 @@ def digests_of(language: Language) -> dict[str, list[str | None]]:
 
 def find_sources(studio: Studio, language: Language) -> dict[str, list[DemonstrationSource | None]]:
     """Return the source of every demonstration of a language by label; None if not known."""
-    keys = digests_of(language)
+    return _find_by_digests(studio, digests_of(language))
+
+
+def _find_by_digests(
+    studio: Studio, keys: dict[str, list[str | None]]
+) -> dict[str, list[DemonstrationSource | None]]:
     known = studio.sources.of({key for row in keys.values() for key in row if key is not None})
     return {
         label: [None if key is None else known.get(key) for key in row]
@@ -91,7 +96,7 @@ class OwnDemonstrations:
         self._language = language
         self._shown = digests_of(language)
         self._of_clip = defaultdict[str, list[tuple[str, int, DemonstrationSource]]](list)
-        for label, row in find_sources(studio, language).items():
+        for label, row in _find_by_digests(studio, self._shown).items():
             for number, source in enumerate(row):
                 if source is not None:
                     self._of_clip[source.clip_id].append((label, number, source))

@@ -103,17 +103,16 @@ def list_waiting(
 
     A take that is a demonstration is read by the language without that demonstration.
     """
-    revision, own = state.revision.revision, OwnDemonstrations(studio, studio.language(state))
-    found = [
-        (tested, _find_own(own, tested.take)) for tested in studio.labelled.of(state.record.id)
-    ]
+    own = OwnDemonstrations(studio, studio.language(state))
     return [
-        (tested.take, without)
-        for tested, without in found
-        if own.leave_one(tested.take.expected, without)
-        and not own.show_former(tested.take.expected, tested.take.former)
-        and all(result.revision != revision for result in _list_valid(studio, tested, without))
+        (tested.take, _find_own(own, tested.take))
+        for tested in studio.labelled.of(state.record.id)
+        if _is_waiting(_view(studio, tested, own), state.revision.revision)
     ]
+
+
+def _is_waiting(take: schemas.LabelledTakeView, revision: int) -> bool:
+    return take.testable and (take.result is None or take.result.revision != revision)
 
 
 def view_test_set(studio: Studio, state: store.LanguageState) -> schemas.TestSetView:
@@ -150,11 +149,7 @@ def view_test_set(studio: Studio, state: store.LanguageState) -> schemas.TestSet
         better=[each for each, gain in gains.items() if gain > 0],
         worse=[each for each, gain in gains.items() if gain < 0],
         upgraded=_were_upgraded(studio, [(before, now) for _, now, before in compared]),
-        waiting=sum(
-            take.testable
-            and (take.result is None or take.result.revision != state.revision.revision)
-            for take in takes
-        ),
+        waiting=sum(_is_waiting(take, state.revision.revision) for take in takes),
     )
 
 

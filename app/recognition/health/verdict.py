@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any
 
 
@@ -51,8 +51,8 @@ class Verdict:
     """
 
     errors: int
-    failing: tuple[TestedGesture, ...] = field(default=())
-    untested: tuple[str, ...] = field(default=())
+    failing: tuple[TestedGesture, ...] = ()
+    untested: tuple[str, ...] = ()
     gestures: int = 0
 
     @classmethod

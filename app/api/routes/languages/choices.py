@@ -237,7 +237,6 @@ def replace_gesture(draft: ReplacementDraft, edit: CurrentEdit) -> LanguageView:
     state = edit.save(f"Change the movement of {draft.label}", edit_language)
     if former:
         edit.studio.labelled.set_aside(edit.language_id, draft.label, former)
-    edit.studio.broadcast.publish("test-sets", id=edit.language_id)
     if where is not None and shown is not None:
         keep_source(edit.studio, state, draft.label, where, shown)
     return edit.answer(state)
