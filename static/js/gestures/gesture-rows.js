@@ -7,6 +7,7 @@ import { withoutJoiners } from "../core/joiners.js";
 /** @import { Choice, Clip, GestureRow, Language, Take, TakeRow } from "../core/types.d.ts" */
 
 const NAMED_BY_CAMERA = /^(img|vid|dscn?|gopr|gh|gx|mvi|mov|pxl|dji|clip|video)?[\d\s._-]*$/i;
+const NONE_IN_TABLE = "-"; // What the table of takes expects of one that shows none of the gestures.
 const TRAILING = /[\s._-]+(demonstration|demo|test|take|clip|video|[tv]?\d+)$/i;
 
 /**
@@ -156,7 +157,8 @@ function asFurther(further, reading) {
  * @param {number | null} number
  */
 function proposedLabel(clip, labels, reading, number) {
-  const known = reading?.expected || labelInName(clip.name, labels);
+  const shown = reading?.expected === NONE_IN_TABLE ? "" : reading?.expected;
+  const known = shown || labelInName(clip.name, labels);
   const proposed = known || labelOf(clip.name);
   return known || !proposed || number === null ? proposed : `${proposed} ${number + 1}`;
 }

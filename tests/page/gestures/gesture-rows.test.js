@@ -85,6 +85,13 @@ test("clips of the language and second clips of a label are left out until they 
   assert.deepEqual(chosen([["b", { label: "box" }]]), [false, true, false]);
 });
 
+test("a take of the test set that shows none of the gestures gets its name from the clip", () => {
+  const takes = new Map([["a", [TAKE]]]);
+  const readings = new Map([["a 0", { label: null, expected: "-" }]]);
+  const [row] = rowsOf([clip("a", "wave.mp4")], takes, null, new Map(), readings);
+  assert.deepEqual([row.label, row.chosen], ["wave", false]);
+});
+
 test("a take without an end is left out until it is chosen", () => {
   const open = new Map([["a", [{ ...TAKE, closed: false }]]]);
   const chosen = (edited) =>
