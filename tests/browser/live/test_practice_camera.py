@@ -25,14 +25,20 @@ from tests.browser.camera import (
 )
 from tests.browser.conftest import OpenPage, started
 
-FEED_RATE = 12
-"""Frames a second, every second one of a clip of 25 Hz: the diver moves as on the clip."""
+FEED_RATE = 6
+"""Frames a second, every second one of a clip of 25 Hz: the diver moves at half the clip's speed.
 
-STILL = 12
+A loaded machine then sees and records as many pictures of a stroke as a quiet one.
+"""
+
+STILL = 8
 """Seconds in which the diver waits before the clip."""
 
-ONE_ROUND = 8.0 + STILL
+ONE_ROUND = 12.0 + STILL
 """Seconds in which the camera shows the whole clip."""
+
+LONGEST_TAKE = 14.0
+"""More seconds than from the first salute to the second, fewer than with the wait before."""
 
 ROUNDS = 3
 """Rounds before the test fails: a recording begun in the middle may contain no complete take."""
@@ -97,8 +103,7 @@ def test_a_gesture_shown_to_the_camera_is_judged_and_counted(
         expect(answer).to_contain_text(JUDGED, timeout=JUDGED_MS)
         if "Right: line" in answer.inner_text():
             break
-    # The camera repeats the take, so that others may have been counted by now, and a busy machine
-    # sees too few frames of some.
+    # The camera repeats the take, so that others may have been counted by now.
     record = page.get_by_role("region", name="Ana")
     expect(record).to_contain_text(re.compile(r"\d errors in \d+ takes?:"))
     expect(record).to_contain_text("line recognised")
@@ -111,4 +116,4 @@ def test_a_gesture_shown_to_the_camera_is_judged_and_counted(
     (shown,) = httpx.get(f"{server.address}/api/v1/languages/{language}/practice").json()
     right = [each["clip_id"] for each in shown["shown"] if each["right"]]
     durations = [server.studio.clips.get(each).clip.duration for each in right]
-    assert min(filter(None, durations)) < STILL or not looked_often(looks[-1]), durations
+    assert min(filter(None, durations)) < LONGEST_TAKE or not looked_often(looks[-1]), durations

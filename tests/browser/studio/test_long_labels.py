@@ -28,6 +28,7 @@ def test_a_long_label_stays_in_the_window(open_page: OpenPage, server: Running, 
     expect(outcome).to_have_text(LABEL)
     meant = page.get_by_role("group", name="Gesture that was meant").get_by_text(LABEL)
     for element in (outcome, meant, page.locator("#expected")):
+        expect(element).to_be_visible()
         box = element.bounding_box()
         assert box is not None
         assert box["x"] >= 0
