@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import shutil
 from collections.abc import Collection, Iterator
 from contextlib import AbstractContextManager, contextmanager, suppress
@@ -299,7 +298,7 @@ class ClipStore(DatabaseStore):
         """
         with self._database.writing() as session:
             clip = _load(session, clip_id)
-            known = {each["name"]: each for each in json.loads(clip.topics)}
+            known = {each["name"]: each for each in clip.topics}
             if topic not in known:
                 raise NotFound(f"clip {clip_id!r} has no topic {topic!r} to choose")
             chosen = known[topic]
@@ -318,9 +317,8 @@ class ClipStore(DatabaseStore):
         """
         with self._database.writing() as session:
             clip = _load(session, clip_id)
-            options = json.loads(clip.options or "{}")
-            options["turn"] = (clip.turn + degrees) % 360
-            clip.options = json.dumps({name: each for name, each in options.items() if each})
+            options = (clip.options or {}) | {"turn": (clip.turn + degrees) % 360}
+            clip.options = {name: each for name, each in options.items() if each}
             if degrees % 180:
                 clip.width, clip.height = clip.height, clip.width
         self.forget_pictures(clip_id)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Collection, Sequence
 from datetime import timedelta
 
@@ -164,8 +163,7 @@ class JobStore(DatabaseStore):
             if job is None or not self._has(job):
                 return False
             job.status, job.finished, job.frames = JobStatus.DONE.value, now(), frames
-            job.warnings = json.dumps(list(warnings), ensure_ascii=False)
-            job.salute_warnings = json.dumps(list(salute_warnings), ensure_ascii=False)
+            job.warnings, job.salute_warnings = [*warnings], [*salute_warnings]
             if clip := session.get(Clip, job.clip_id):
                 clip.frames = frames
                 if seconds is not None and _contradicts(clip.duration, seconds):

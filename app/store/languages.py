@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass
 from datetime import datetime
@@ -277,8 +276,7 @@ def _require_head(head: int, expected: int | None) -> None:
 
 
 def _row(language_id: str, revision: int, draft: Draft, owner: str) -> LanguageRevision:
-    labels = json.dumps(list(draft.labels), ensure_ascii=False)
-    content = vars(draft) | {"labels": labels, "owner": owner, "size": draft.size}
+    content = vars(draft) | {"labels": [*draft.labels], "owner": owner, "size": draft.size}
     return LanguageRevision(language_id=language_id, revision=revision, **content)
 
 

@@ -6,7 +6,7 @@ import json
 import re
 from datetime import UTC, datetime, timedelta
 from enum import StrEnum
-from typing import Final, Literal
+from typing import Any, Final, Literal
 from uuid import uuid4
 
 from sqlalchemy import (
@@ -55,6 +55,21 @@ class UtcDateTime(TypeDecorator[datetime]):
     def process_result_value(self, value: datetime | None, dialect: object) -> datetime | None:
         """Add the zone."""
         return None if value is None else value.replace(tzinfo=UTC)
+
+
+class Json(TypeDecorator[Any]):
+    """A value of lists, objects, texts and numbers, stored as JSON text."""
+
+    impl = Text
+    cache_ok = True
+
+    def process_bind_param(self, value: Any, dialect: object) -> str | None:
+        """Write JSON."""
+        return None if value is None else json.dumps(value, ensure_ascii=False, allow_nan=False)
+
+    def process_result_value(self, value: str | None, dialect: object) -> Any:
+        """Read JSON."""
+        return None if value is None else json.loads(value)
 
 
 ByteCount = BigInteger().with_variant(Integer(), "sqlite")
@@ -106,14 +121,16 @@ class Clip(_OwnedRow, table=True):
     """Seconds; ``None`` where the container does not say."""
     frames: int | None = None
     """Frames the container states, then those decoded; ``None`` while unknown."""
-    topics: str = Field(default="[]", sa_column=Column(Text, nullable=False, server_default="[]"))
-    """Usable topics of a dive recording, as a JSON array; empty for other clips."""
+    topics: list[dict[str, Any]] = Field(
+        default=[], sa_column=Column(Json, nullable=False, server_default="[]")
+    )
+    """Usable topics of a dive recording (`app.bags.TopicSummary`); empty for other clips."""
     topic: str | None = Field(default=None, max_length=255)
     """Name of the topic that this clip is made of; ``None`` before the choice, or for a video."""
     source: str = Field(default=VIDEO, max_length=16, sa_column_kwargs={"server_default": VIDEO})
     """Kind of the received file: the name of its `app.clip_sources.ClipSource`."""
-    options: str | None = Field(default=None, sa_column=Column(Text, nullable=True))
-    """How the file is read, as a JSON object (`app.clip_sources.ReadOptions`)."""
+    options: dict[str, Any] | None = Field(default=None, sa_type=Json)
+    """How the file is read (`app.clip_sources.ReadOptions`)."""
     idempotency_key: str | None = Field(default=None, max_length=255, unique=True)
     created: datetime = Field(default_factory=now, sa_type=UtcDateTime, index=True)
     deleted: datetime | None = Field(default=None, sa_type=UtcDateTime)
@@ -131,12 +148,12 @@ class Clip(_OwnedRow, table=True):
     @property
     def turn(self) -> int:
         """Degrees, clockwise, by which its pictures are turned."""
-        return int(json.loads(self.options or "{}").get("turn", 0))
+        return int((self.options or {}).get("turn", 0))
 
     @property
     def needs_topic(self) -> bool:
         """Whether somebody must choose a topic before its job can begin."""
-        return self.topics != "[]" and self.topic is None
+        return bool(self.topics) and self.topic is None
 
 
 class Job(SQLModel, table=True):
@@ -160,10 +177,10 @@ class Job(SQLModel, table=True):
     """Frames decoded, once it is done."""
     error_code: str | None = Field(default=None, max_length=64)
     error: str | None = Field(default=None, sa_column=Column(Text))
-    warnings: str = Field(default="[]", sa_column=Column(Text, nullable=False))
-    """Warnings about the clip for the user, as a JSON array of sentences."""
-    salute_warnings: str = Field(
-        default="[]", sa_column=Column(Text, nullable=False, server_default="[]")
+    warnings: list[str] = Field(default=[], sa_type=Json)
+    """Warnings about the clip for the user, as sentences."""
+    salute_warnings: list[str] = Field(
+        default=[], sa_column=Column(Json, nullable=False, server_default="[]")
     )
     """Those that concern only languages with the salute as trigger, which `warnings` lacks."""
     created: datetime = Field(default_factory=now, sa_type=UtcDateTime, index=True)
@@ -200,8 +217,8 @@ class LanguageRevision(_OwnedRow, table=True):
     revision: int = Field(primary_key=True)
     name: str = Field(max_length=200)
     """The language's name in this revision, for lists."""
-    labels: str = Field(sa_column=Column(Text, nullable=False))
-    """The gestures' labels as a JSON array, for lists."""
+    labels: list[str] = Field(sa_type=Json)
+    """The gestures' labels, for lists."""
     change: str = Field(max_length=300)
     """Change made by this revision, for the history."""
     author: str = Field(default="", max_length=200, sa_column_kwargs={"server_default": ""})
@@ -251,9 +268,9 @@ class LabelledTake(_TakeRow, table=True):
     end: float
     expected: str = Field(max_length=200)
     """The label that it should be recognised as; empty: none of the gestures."""
-    former: str | None = Field(default=None, sa_column=Column(Text))
-    """Digests of the demonstrations of the movement that it shows, as a JSON array, since its
-    gesture got another one; ``None``: it has not."""
+    former: list[str] | None = Field(default=None, sa_type=Json)
+    """Digests of the demonstrations of the movement that it shows, since its gesture got another
+    one; ``None``: it has not."""
     added_by: str = Field(default="", max_length=80, sa_column_kwargs={"server_default": ""})
     """Name of the token that added it; empty: not known, or none is needed."""
     created: datetime = Field(default_factory=now, sa_type=UtcDateTime)
@@ -271,8 +288,8 @@ class LabelledResult(SQLModel, table=True):
     recognition_id: str | None = Field(default=None, max_length=32)
     """The recognition; ``None`` if there is none, for the reason in `fault`."""
     label: str | None = Field(default=None, max_length=200)
-    pair: str | None = Field(default=None, sa_column=Column(Text))
-    """The two gestures between which the take lies, as a JSON array; ``None``: no two."""
+    pair: list[str] | None = Field(default=None, sa_type=Json)
+    """The two gestures between which the take lies; ``None``: no two."""
     nearest: str | None = Field(default=None, max_length=200)
     confidence: float = 0.0
     fault: str | None = Field(default=None, sa_column=Column(Text))
@@ -288,8 +305,8 @@ class PracticeTake(_TakeRow, table=True):
     expected: str = Field(max_length=200)
     label: str | None = Field(default=None, max_length=200)
     """The label recognised; ``None``: a pair, or rejected."""
-    pair: str | None = Field(default=None, sa_column=Column(Text))
-    """The two gestures between which the take lies, as a JSON array; ``None``: no two."""
+    pair: list[str] | None = Field(default=None, sa_type=Json)
+    """The two gestures between which the take lies; ``None``: no two."""
     revision: int
     recognition_id: str = Field(max_length=32)
     added_by: str = Field(default="", max_length=80, sa_column_kwargs={"server_default": ""})

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections import defaultdict
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -99,7 +98,7 @@ class LabelledTakeStore(DatabaseStore):
                     col(LabelledTake.expected) == label,
                     col(LabelledTake.former).is_(None),
                 )
-                .values(former=json.dumps(former))
+                .values(former=[*former])
             )
 
     def remove(self, language_id: str, take_id: str) -> None:

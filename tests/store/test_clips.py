@@ -1,7 +1,6 @@
 """Clips: file and row appear and disappear together, whatever breaks in between."""
 
 import errno
-import json
 import os
 import sqlite3
 from collections.abc import Iterator
@@ -66,7 +65,7 @@ def add_bag(clips: ClipStore, topic: str | None = None) -> ClipWithJob:
         size=3,
         width=64,
         height=48,
-        topics=json.dumps(TOPICS),
+        topics=TOPICS,
         topic=topic,
         source="bag",
     )

@@ -22,7 +22,7 @@ def test_a_job_that_completes_notes_frames_and_warnings(
     assert jobs.complete(job_id, 42, ["no hand in any frame"])
     job = jobs.get(job_id)
     assert job.status == JobStatus.DONE
-    assert job.warnings == '["no hand in any frame"]'
+    assert job.warnings == ["no hand in any frame"]
     assert job.started is not None
     assert job.finished is not None
     assert clips.get(job.clip_id).clip.frames == 42

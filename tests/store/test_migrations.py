@@ -120,7 +120,7 @@ def test_a_database_of_a_former_version_keeps_all_that_is_in_it(
     assert (kept.clip.name, kept.clip.size, kept.clip.duration) == ("dive 'one'.mp4", 1234, 2.5)
     assert kept.clip.created == datetime(2026, 1, 2, 3, 4, 5, 678901, UTC)
     assert (kept.clip.source, kept.clip.owner, kept.clip.idempotency_key) == ("video", "", "key-1")
-    assert (kept.job.status, kept.job.frames, kept.job.warnings) == ("done", 50, '["a warning"]')
+    assert (kept.job.status, kept.job.frames, kept.job.warnings) == ("done", 50, ["a warning"])
     clips.restore("d" * 32)
     restored = clips.get("d" * 32)
     assert (restored.clip.duration, restored.job.error_code) == (None, "decoder")

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import functools
-import json
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -184,15 +183,15 @@ def _facts(name: str, options: ReadOptions, probed: Probed) -> dict[str, Any]:
             topics=[each.model_dump() for each in probed.topics],
         )
     shown = probed if topic is None else named[topic]
-    kept = options.model_dump_json(exclude_defaults=True, exclude={"topic"})
+    kept = options.model_dump(mode="json", exclude_defaults=True, exclude={"topic"})
     return {
         "width": shown.width,
         "height": shown.height,
         "duration": shown.duration,
         "frames": shown.frames,
-        "topics": json.dumps([each.model_dump() for each in probed.topics]),
+        "topics": [each.model_dump() for each in probed.topics],
         "topic": topic,
-        "options": None if kept == "{}" else kept,
+        "options": kept or None,
     }
 
 

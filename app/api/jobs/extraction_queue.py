@@ -44,7 +44,7 @@ def job_event(job: store.Job) -> Event:
 
 def options_of(clip: store.Clip) -> ReadOptions:
     """Return how the file of a stored clip is read."""
-    options = ReadOptions.model_validate_json(clip.options or "{}")
+    options = ReadOptions.model_validate(clip.options or {})
     return options.model_copy(update={"topic": clip.topic})
 
 

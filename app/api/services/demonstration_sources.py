@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 from collections import defaultdict
+from collections.abc import Sequence
 
 from app.api.http.schemas.gestures import DemonstrationFaultView, NewDemonstration, SourceView
 from app.api.http.schemas.values import NONE_EXPECTED
@@ -110,11 +111,9 @@ class OwnDemonstrations:
             if min(end, source.end) - max(start, source.start) > least
         )
 
-    def show_former(self, expected: str, former: str | None) -> bool:
-        """Return whether a gesture has another movement than one of these digests, as JSON."""
-        return former is not None and {*json.loads(former)}.isdisjoint(
-            self._shown.get(expected, ())
-        )
+    def show_former(self, expected: str, former: Sequence[str] | None) -> bool:
+        """Return whether a gesture has another movement than one of these digests."""
+        return former is not None and {*former}.isdisjoint(self._shown.get(expected, ()))
 
     def leave_one(self, expected: str, without: LeftOut) -> bool:
         """Return whether a gesture is known by another demonstration than those left out.

@@ -94,7 +94,7 @@ def view_summary(state: LanguageState) -> LanguageSummary:
     return LanguageSummary(
         **state.record.model_dump(include={"id", "sample", "created"}),
         **row.model_dump(include={"name", "revision", "author", "change"}),
-        labels=json.loads(row.labels),
+        labels=row.labels,
         updated=row.created,
     )
 

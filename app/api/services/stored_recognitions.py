@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Collection, Iterable, Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator
 from dataclasses import replace
 from typing import Any
 
@@ -189,19 +189,6 @@ def load_language(record: store.RecognitionRecord, studio: Studio) -> Language:
     state = studio.languages.get(record.language_id, record.revision)
     trial = view_recognition(record).trial
     return studio.language(state) if trial is None else try_gesture(studio, state, trial)
-
-
-def write_pair(pair: Sequence[str] | None) -> str | None:
-    """Return the pair of an answer as the store keeps it; None without one."""
-    return None if pair is None else json.dumps(pair)
-
-
-def read_pair(stored: str | None) -> tuple[str, str] | None:
-    """Return a pair that `write_pair` has written."""
-    if stored is None:
-        return None
-    nearest, other = json.loads(stored)
-    return nearest, other
 
 
 def load_recognition(record: store.RecognitionRecord) -> Recognition:

@@ -15,7 +15,7 @@ from app.api.services.clip_responses import shows_pictures
 from app.api.services.clip_takes import find_takes
 from app.api.services.demonstration_sources import LeftOut, OwnDemonstrations
 from app.api.services.running_studio import Studio
-from app.api.services.stored_recognitions import WITHOUT, read_pair, write_pair
+from app.api.services.stored_recognitions import WITHOUT
 from app.api.workers.tasks import TakeToRecognize, TestRun
 from app.api.workers.worker_messages import Failed, Finished, Progress, RecognizedTake
 from app.evaluation.proportion import Share
@@ -194,7 +194,7 @@ def _keep(
         )
         result.recognition_id = studio.recognitions.add(record).id
         result.label, result.nearest = answer["label"], answer["nearest"]
-        result.pair = write_pair(answer["pair"])
+        result.pair = answer["pair"]
         result.confidence = answer["confidence"]
     studio.labelled.keep(result, take.expected)
 
@@ -299,8 +299,7 @@ def _view(
     is_testable = own.leave_one(take.expected, without) and not set_aside
     results = [
         schemas.LabelledResultView(
-            **result.model_dump(exclude={"take_id", "created", "pair"}),
-            pair=read_pair(result.pair),
+            **result.model_dump(exclude={"take_id", "created"}),
             right=_is_right(take, result),
         )
         for result in (_list_valid(studio, tested, without) if is_testable else ())

@@ -26,7 +26,7 @@ from app.recognition.errors import OsgError
 from app.store.backup.rows import AT_ONCE
 from app.store.database import Database
 from app.store.invitations import LONGEST_DAYS
-from app.store.models import OWN_ID, Clip, Invitation, UtcDateTime, now
+from app.store.models import OWN_ID, Clip, Invitation, Json, UtcDateTime, now
 
 OTHER_CLOCK: Final = timedelta(days=1)
 """Longest time by which the clock of another machine may be fast."""
@@ -39,8 +39,7 @@ _MOST: Final = 2**53 - 1
 
 _VIDEO_TYPE: Final = re.compile(r"video/[a-z0-9-]{1,40}")
 _STRINGS: Final = TypeAdapter(tuple[str, ...])
-_OPTIONS: Final = TypeAdapter(ReadOptions)
-_TOPICS: Final = TypeAdapter(tuple[TopicSummary, ...])
+_PAIR: Final = TypeAdapter(tuple[str, str])
 _REVISION: Final = re.compile(r"\d{4}")
 _READING: Final = frozenset({sqlite3.SQLITE_SELECT, sqlite3.SQLITE_READ, sqlite3.SQLITE_PRAGMA})
 _OF_SQLITE: Final = "sqlite_"
@@ -169,6 +168,8 @@ def _is_ours(column: Column[Any], value: object, latest: datetime) -> bool:
             return isinstance(value, int | float) and math.isfinite(value)
         case Integer():
             return isinstance(value, int) and 0 <= value <= _MOST
+        case Json():
+            return _JSON[place].validate_python(value) is not None
         case String() | AutoString():
             if not isinstance(value, str):
                 return False
@@ -176,10 +177,6 @@ def _is_ours(column: Column[Any], value: object, latest: datetime) -> bool:
                 return OWN_ID.fullmatch(value) is not None
             return place not in _TEXTS or _TEXTS[place](value)
     return False
-
-
-def _is_json_as(kind: TypeAdapter[Any]) -> Callable[[str], bool]:
-    return lambda text: kind.validate_json(text) is not None
 
 
 def _is_json_of(kind: type) -> Callable[[str], bool]:
@@ -190,15 +187,22 @@ _TEXTS: Final[dict[str, Callable[[str], bool]]] = {
     "clip.source": lambda text: text in {source.name for source in SOURCES},
     # As another type, a player would show the file as a page.
     "clip.media_type": lambda text: _VIDEO_TYPE.fullmatch(text) is not None,
-    "clip.topics": _is_json_as(_TOPICS),
-    "clip.options": _is_json_as(_OPTIONS),
-    "job.warnings": _is_json_as(_STRINGS),
-    "job.salute_warnings": _is_json_as(_STRINGS),
-    "language_revision.labels": _is_json_as(_STRINGS),
     "language_revision.document": _is_json_of(dict),
     "recognition.result": _is_json_of(dict),
 }
 """Checks of the texts that become paths or headers or are parsed; they may raise ValueError."""
+
+_JSON: Final[dict[str, TypeAdapter[Any]]] = {
+    "clip.topics": TypeAdapter(tuple[TopicSummary, ...]),
+    "clip.options": TypeAdapter(ReadOptions),
+    "job.warnings": _STRINGS,
+    "job.salute_warnings": _STRINGS,
+    "language_revision.labels": _STRINGS,
+    "labelled_take.former": _STRINGS,
+    "labelled_result.pair": _PAIR,
+    "practice_take.pair": _PAIR,
+}
+"""What the columns of JSON hold."""
 
 
 def _shown(value: object) -> str:

@@ -142,7 +142,7 @@ async def choose_topic(
 ) -> schemas.ClipAccepted:
     """Choose the topic of a dive recording that a clip is made of, and extract its poses."""
     found = await run_in_threadpool(studio.clips.get, clip_id)
-    known = [topic["name"] for topic in json.loads(found.clip.topics)]
+    known = [topic["name"] for topic in found.clip.topics]
     if choice.topic not in known:
         detail = f"this clip has no topic {choice.topic!r}; it has {', '.join(known) or 'none'}"
         raise ProblemError(422, "topic_unusable", detail)

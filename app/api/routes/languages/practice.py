@@ -18,9 +18,7 @@ from app.api.services.running_studio import CurrentStudio, Studio, edited
 from app.api.services.stored_recognitions import (
     load_context,
     load_recognition,
-    read_pair,
     recognize_range,
-    write_pair,
 )
 from app.evaluation.error_rate_bound import CONFIDENCE, LIMIT, bound_error_rate, count_takes_needed
 from app.recognition.decision.result import Pair
@@ -125,7 +123,7 @@ def show_gesture(
             diver=draft.diver.strip(),
             expected=draft.expected,
             label=answer.label,
-            pair=write_pair(answer.pair),
+            pair=None if answer.pair is None else [*answer.pair],
             revision=record.revision,
             recognition_id=record.id,
             added_by=quota.owner,
@@ -162,7 +160,7 @@ def _records(studio: Studio, state: LanguageState) -> list[PracticeRecordView]:
 
 def _record(diver: str, takes: list[PracticeTake], revision: int) -> PracticeRecordView:
     current = [take for take in takes if take.revision == revision]
-    counted = [take for take in current if take.expected not in (read_pair(take.pair) or ())]
+    counted = [take for take in current if take.expected not in (take.pair or ())]
     errors = sum(take.label != take.expected for take in counted)
     bound = bound_error_rate(errors, len(counted))
     return PracticeRecordView(
@@ -181,6 +179,6 @@ def _record(diver: str, takes: list[PracticeTake], revision: int) -> PracticeRec
 
 
 def _view(take: PracticeTake) -> PracticeTakeView:
-    shown = take.model_dump(exclude={"language_id", "start", "diver", "created", "pair"})
+    shown = take.model_dump(exclude={"language_id", "start", "diver", "created"})
     right = take.label == take.expected
-    return PracticeTakeView(**shown, pair=read_pair(take.pair), right=right)
+    return PracticeTakeView(**shown, right=right)

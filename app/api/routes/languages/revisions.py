@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import json
-
 from fastapi import APIRouter
 
 from app.api.http.problems import problem_responses
@@ -67,5 +65,5 @@ def _view(state: LanguageState | None, gesture: Gesture | None) -> GestureView |
 def _revision_view(row: LanguageRevision) -> schemas.RevisionView:
     return schemas.RevisionView(
         **row.model_dump(include={"revision", "name", "author", "change", "created"}),
-        labels=json.loads(row.labels),
+        labels=row.labels,
     )

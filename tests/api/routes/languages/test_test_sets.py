@@ -203,6 +203,18 @@ def test_a_pair_is_counted_on_its_own_and_lies_between_right_and_wrong(
     assert (better["overall"]["right"], better["overall"]["pairs"]) == (1, 0)
 
 
+def test_a_label_within_a_pair_s_label_is_not_one_of_the_pair(
+    client: httpx.Client, studio: Studio
+) -> None:
+    language = add_ambiguous_language(client)
+    rename = {"label": "ri"}
+    client.patch(f"{language}/gestures", params={"label": "line"}, json=rename).raise_for_status()
+    clip = add_recorded_clip(studio, recording_of("circle"), "one.mp4")
+    labelled(client, f"{language}/test-set", {"clip_id": clip, "expected": "ri"})
+    found = run(client, f"{language}/test-set")["overall"]
+    assert (found["pairs"], found["pairs_right"]) == (1, 0)
+
+
 def test_a_take_gets_another_label_and_is_removed(
     client: httpx.Client, studio: Studio, place: str
 ) -> None:
