@@ -71,7 +71,7 @@ def recognize_range(
         start=meant.start,
         end=meant.end,
         profile=profile,
-        expected=wanted.stored,
+        expected=None if wanted.stored is None else language.spell(wanted.stored),
         result=json.dumps(answer, allow_nan=False),
     )
     return studio.keep_within(quota, lambda: studio.recognitions.add(record, quota))

@@ -38,17 +38,19 @@ def add_labelled(
         When the set would have more takes than it may.
 
     """
+    state = studio.languages.get(language_id)
+    language = studio.language(state)
     takes = [
         store.LabelledTake(
             language_id=language_id,
             clip_id=draft.clip_id,
             start=start,
             end=end,
-            expected=draft.stored,
+            expected=language.spell(draft.stored),
             added_by=sender,
         )
         for draft in drafts
-        for start, end in _ranges(studio, draft, studio.languages.get(language_id))
+        for start, end in _ranges(studio, draft, state)
     ]
     studio.labelled.add(takes)
 

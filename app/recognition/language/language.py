@@ -159,12 +159,17 @@ class Language:
             When there is none.
 
         """
-        wanted = compose(label)
+        wanted = self.spell(label)
         for gesture in self.gestures:
-            if compose(gesture.label) == wanted:
+            if gesture.label == wanted:
                 return gesture
         known = ", ".join(self.labels)
         raise LanguageError(f"no gesture {label!r} in {self.name!r}; it has {known}")
+
+    def spell(self, label: str) -> str:
+        """Return a label as the language writes it, in composed form if it has no such gesture."""
+        wanted = compose(label)
+        return next((each for each in self.labels if compose(each) == wanted), wanted)
 
     def tuning_with(self, profile: str) -> Tuning:
         """Return the tuning for a profile; weight factors apply to the language's own only."""

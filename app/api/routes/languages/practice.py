@@ -108,7 +108,7 @@ def show_gesture(
     """Recognise what a diver shows, say what to change, and keep it in the diver's record."""
     state = studio.languages.get(language_id)
     language = studio.language(state)
-    gesture_in(language, draft.expected)
+    expected = gesture_in(language, language.spell(draft.expected)).label
     if draft.clip_id in {source.clip_id for source in list_sources(studio, language)}:
         detail = "this clip is a demonstration of the language, which is recognised by construction"
         raise ProblemError(409, "is_demonstration", detail)
@@ -121,7 +121,7 @@ def show_gesture(
             clip_id=draft.clip_id,
             start=record.start,
             diver=draft.diver.strip(),
-            expected=draft.expected,
+            expected=expected,
             label=answer.label,
             pair=None if answer.pair is None else [*answer.pair],
             revision=record.revision,
@@ -129,7 +129,7 @@ def show_gesture(
             added_by=quota.owner,
         )
     )
-    why = explain(load_context(record, studio), draft.expected, with_counterfactuals=False)
+    why = explain(load_context(record, studio), expected, with_counterfactuals=False)
     records = _records(studio, state)
     return PracticeAnswerView(
         take=_view(take),

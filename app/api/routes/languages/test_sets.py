@@ -70,7 +70,8 @@ def label_take(
 ) -> TestSetView:
     """Give a take another label."""
     state = studio.languages.get(language_id)
-    studio.labelled.label(language_id, take_id, change.stored)
+    expected = studio.language(state).spell(change.stored)
+    studio.labelled.label(language_id, take_id, expected)
     return _changed(studio, state)
 
 

@@ -15,7 +15,7 @@ import pytest
 
 from app.api.services.running_studio import Studio
 from app.api.services.test_sets import test_run_key as key_of_run
-from app.recognition import Recording
+from app.recognition import Gesture, Language, Recording, takes_in
 from app.store import JobStatus
 from tests.api.languages import LANGUAGES, add_ambiguous_language, add_gesture
 from tests.api.recordings import add_recorded_clip, recording_of
@@ -215,6 +215,25 @@ def test_a_label_within_a_pair_s_label_is_not_one_of_the_pair(
     assert (found["pairs"], found["pairs_right"]) == (1, 0)
 
 
+@pytest.mark.parametrize("stored", ["\u00e9", "e\u0301"])
+def test_a_label_is_found_in_either_form_of_its_accents(
+    client: httpx.Client, studio: Studio, stored: str
+) -> None:
+    shown = takes_in(recording_of("circle"))[0].poses
+    gesture = replace(Gesture.from_demonstration("circle", shown), label=stored)
+    content = Language("accents", [gesture]).to_json()
+    language = client.post(f"{LANGUAGES}/import", content=content).json()["id"]
+    place = f"{LANGUAGES}/{language}/test-set"
+    clip = add_recorded_clip(studio, recording_of("circle"), "again.mp4")
+    for typed in ("\u00e9", "e\u0301"):
+        (take,) = labelled(client, place, {"clip_id": clip, "expected": typed}).json()["takes"]
+        assert run(client, place)["overall"]["right"] == 1
+        client.delete(f"{place}/{take['id']}").raise_for_status()
+        asked = {"clip_id": clip, "diver": "Ana", "expected": typed}
+        answer = client.post(f"{LANGUAGES}/{language}/practice", json=asked).json()
+        assert answer["take"]["right"]
+
+
 def test_a_take_gets_another_label_and_is_removed(
     client: httpx.Client, studio: Studio, place: str
 ) -> None:
@@ -285,7 +304,8 @@ def test_a_run_goes_on_when_the_client_leaves(
     ):
         leaving.post(f"{place}/run")
     until(lambda: client.get(place).json()["waiting"] == 0)
-    assert studio.runner.progress(key) is None
+    # The results are stored before the job ends.
+    until(lambda: studio.runner.progress(key) is None)
 
 
 @linux
