@@ -23,7 +23,7 @@ from app.keypoint_files.keypoint_table import (
 )
 from app.recognition.errors import KeypointFileError
 from app.recognition.poses.frame import Hand, Side
-from app.recognition.poses.landmarks import HAND_LANDMARKS, HIPS, SHOULDERS
+from app.recognition.poses.landmarks import HAND_LANDMARKS, HIPS, POSE_LANDMARKS, SHOULDERS
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.skeletons import (
     KEYPOINT_SETS,
@@ -33,15 +33,16 @@ from app.recognition.poses.skeletons import (
 from app.recognition.recording.people import Choice, People, SeenPerson
 from app.recognition.recording.salute import best_salute
 
-FACE: Final = ("left_eye", "right_eye", "left_ear", "right_ear")
-"""Landmarks that are close together, on every body."""
+FACE: Final = frozenset(POSE_LANDMARKS[:11])
+"""Landmarks that are close together, on every body: nose, eyes, ears and mouth."""
 
 LARGEST_FACE: Final = 0.35
-"""Largest share of a body's extent that is between eyes and ears, also without legs in view."""
+"""Largest share of a body's extent that is within a face, also without legs in view."""
 
 LARGEST_SLIP: Final = 0.25
 """Largest distance of a neck from the middle of the shoulders, in their width and a quarter of the
-body's extent: models find it a few hundredths off, and the width is small from the side."""
+body's extent: models find it a few hundredths off, and the width is small from the side. Of a hand
+from its wrist, in half of the body's extent: the other wrist is further away."""
 
 LEAST_HAND: Final = 0.3
 """Least mean score of a hand among a whole body's keypoints: its model places both hands always."""
@@ -234,15 +235,15 @@ def _verify(kind: KeypointSet, points: FloatArray, path: Path, *, named: bool) -
 def _agrees(kind: KeypointSet, points: FloatArray) -> bool | None:
     """Return whether keypoints lie as in a set; None where nothing that decides is seen.
 
-    Eyes and ears are close together, the neck is between the shoulders, and the middle of the hips
-    between these.
+    A face is small, the neck is between the shoulders, the middle of the hips
+    between these, and hands begin at their wrists.
     """
     xy = mask_unseen(points[..., :2], visibility_of(points), 0.0)
     place = {name: at for at, name in enumerate(kind.landmarks) if name}
     xy = xy[2 * np.isfinite(xy[:, list(place.values()), 0]).sum(axis=1) > len(place)]
     if not len(xy):
         return None
-    body, face = xy[:, list(place.values())], xy[:, [place[name] for name in FACE]]
+    body, face = xy[:, list(place.values())], xy[:, [place[name] for name in place if name in FACE]]
     extent = np.linalg.norm(np.nanmax(body, axis=1) - np.nanmin(body, axis=1), axis=1)
     apart = [np.linalg.norm(np.ptp(face, axis=1), axis=1) - LARGEST_FACE * extent]
     for middle, pair in zip(kind.middles, (SHOULDERS, HIPS), strict=False):
@@ -250,6 +251,9 @@ def _agrees(kind: KeypointSet, points: FloatArray) -> bool | None:
         off = np.linalg.norm(xy[:, middle] - (one + other) / 2, axis=1)
         allowed = LARGEST_SLIP * (np.linalg.norm(one - other, axis=1) + extent / 4)
         apart.append(off - allowed)
+    for side, first in kind.hands.items():
+        off = np.linalg.norm(xy[:, first] - xy[:, place[f"{side}_wrist"]], axis=1)
+        apart.append(off - LARGEST_SLIP * extent / 2)
     known = [each[np.isfinite(each)] for each in apart]
     judged = [bool(np.median(each) <= 0) for each in known if len(each)]
     return all(judged) if judged else None

@@ -239,15 +239,21 @@ def _points(rows: list[list[list[float]]], count: int) -> FloatArray:
 
 
 def _whole(lines: Iterator[list[str]], cells: int, path: Path) -> Iterator[list[str]]:
-    """Skip empty lines, and refuse those with more cells than the heading has."""
-    for line in lines:
+    """Skip empty lines, and refuse those with more or fewer cells than the heading has."""
+    for number, line in enumerate(lines):
         if any(cell.strip() for cell in line[cells:]):
             raise KeypointFileError(
                 f"{path}: rows have {len(line)} cells, the heading {cells}; where commas are "
                 "decimal ones, separate the cells by semicolons"
             )
-        if any(cell.strip() for cell in line):
-            yield line
+        if not any(cell.strip() for cell in line):
+            continue
+        if len(line) < cells:
+            raise KeypointFileError(
+                f"{path}: row {number} has {len(line)} cells, the heading {cells}; write an empty "
+                "cell for each keypoint that was not found, and remove a row that breaks off"
+            )
+        yield line
 
 
 def _number(line: Sequence[str], place: int | None, row: int, path: Path) -> float:

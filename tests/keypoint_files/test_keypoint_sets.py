@@ -52,7 +52,11 @@ def points_of(landmarks: LandmarkSet) -> FloatArray:
         else:
             column = POSES.column("nose" if part in ("eye", "ear") else name)
         columns.append(column)
-    return np.stack(columns, axis=1)
+    points = np.stack(columns, axis=1)
+    first = LEFT_HAND.get(len(landmarks), len(landmarks))
+    for side, at in (("left", first), ("right", first + len(HAND_LANDMARKS))):
+        points[:, at : at + len(HAND_LANDMARKS)] = POSES.column(f"{side}_wrist")[:, None]
+    return points
 
 
 def write_json(folder: Path, content: Any) -> Path:
@@ -192,7 +196,8 @@ def test_places_in_space_are_no_picture_s(tmp_path: Path) -> None:
             read_keypoints(path, OPTIONS)
 
 
-SHOWN = hand_xy(salute()) * 80 + (300, 200)
+HAND = hand_xy(salute()) * 80
+SHOWN = HAND - HAND[0] + POSES.column("left_wrist")[0]
 SALUTES = [True] * 3 + [False] * 7
 
 
@@ -209,6 +214,18 @@ def test_hands_of_a_whole_body_are_kept_and_show_a_salute(
     assert (read.recording.salute > ENTER_SCORE).tolist() == SALUTES
     assert read.recording.hands[0][0].side == "left"
     assert not any("left out" in note for note in read.recording.warnings)
+
+
+@pytest.mark.parametrize("write", WRITERS)
+@pytest.mark.parametrize("count", WHOLE)
+def test_hands_that_begin_at_the_other_wrist_are_of_another_set(
+    tmp_path: Path, write: Any, count: int
+) -> None:
+    points = points_of(WHOLE[count])
+    first, size = LEFT_HAND[count], len(HAND_LANDMARKS)
+    points[:, first : first + 2 * size] = np.roll(points[:, first : first + 2 * size], size, axis=1)
+    with pytest.raises(KeypointFileError, match="they do not lie as those of"):
+        read_keypoints(write(tmp_path, points), OPTIONS)
 
 
 def test_hands_that_the_model_of_a_whole_body_only_supposes_are_none(tmp_path: Path) -> None:

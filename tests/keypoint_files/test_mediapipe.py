@@ -337,6 +337,8 @@ def test_results_of_mmpose_alphapose_and_coco_are_read_and_one_person_is_followe
 ) -> None:
     body = POSES.xy[:, COCO_COLUMNS]
     whole = np.concatenate([body, np.repeat(body[:, :1], count - 17, axis=1)], axis=1)
+    for first, side in ((91, "left"), (112, "right")):
+        whole[:, first : first + 21] = POSES.column(f"{side}_wrist")[:, None]
     small = 5 + whole / 10
     flat = kind in ("coco", "alphapose")
     frames = [[person(each[at], flat=flat) for each in (small, whole)] for at in range(len(whole))]

@@ -12,7 +12,7 @@ Shape = Callable[[FloatArray], FloatArray]
 """Maps shares of the duration ``(T,)`` to points ``(T, 2)`` in torso lengths from its centre."""
 
 BODY: Mapping[str, tuple[float, float]] = {
-    "nose": (0.0, -0.85),
+    **dict.fromkeys(POSE_LANDMARKS[:11], (0.0, -0.85)),
     "left_shoulder": (0.3, -0.5),
     "right_shoulder": (-0.3, -0.5),
     "left_elbow": (0.45, 0.0),
