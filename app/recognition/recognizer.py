@@ -172,7 +172,8 @@ class Recognizer:
         """
         result = self.examine(poses).result
         if unseen:
-            return _refuse(result, describe_unseen(unseen, self.language.trigger.noun), None)
+            refused = _refuse(result, describe_unseen(unseen, self.language.trigger.noun), None)
+            return refused.model_copy(update={"unseen": tuple(unseen)})
         findings = (*result.findings, *find_pauses(poses.time))
         return result.model_copy(update={"findings": findings})
 

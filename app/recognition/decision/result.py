@@ -23,6 +23,7 @@ from app.recognition.decision.outcome import find_answer
 from app.recognition.gestures.profile import ProfileName
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.preprocessing.quality import QualityFaultKind
+from app.recognition.recording.trimming import Span
 from app.recognition.text.described import DESCRIBED
 from app.recognition.voters.motion_voters import SecondOpinion
 
@@ -127,6 +128,8 @@ class Recognition(BaseModel):
     the hand shape of `nearest` counts, or no second trigger ended the take; null: there is one."""
     fault_kind: QualityFaultKind | None = None
     """The kind of the keypoints' fault, or null."""
+    unseen: tuple[Span, ...] = ()
+    """Spans of the take in which a trigger may have been missed; a take with one has no label."""
     voters: tuple[str, ...]
     gestures: tuple[str, ...]
     distances: Annotated[FloatArray, InLists(list[list[Number]], missing=math.inf)]

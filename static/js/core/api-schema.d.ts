@@ -3721,6 +3721,12 @@ export interface components {
              * @description The kind of the keypoints' fault, or null.
              */
             fault_kind: ("few_frames" | "nothing_seen" | "not_followed" | "leaps" | "unseen_hand") | null;
+            /**
+             * Unseen
+             * @description Spans of the take in which a trigger may have been missed; a take with one has no label.
+             * @default []
+             */
+            unseen: components["schemas"]["Span"][];
             /** Voters */
             voters: string[];
             /** Gestures */
@@ -4138,6 +4144,23 @@ export interface components {
              * @description Why it is a bad demonstration, the gravest fault first.
              */
             faults: components["schemas"]["DemonstrationFaultView"][];
+        };
+        /**
+         * Span
+         * @description A span of time.
+         *
+         *     Attributes
+         *     ----------
+         *     start, end
+         *         Seconds, in the clock of the recording; ``start <= end``.
+         */
+        Span: {
+            /** Start */
+            start: number;
+            /** End */
+            end: number;
+        } & {
+            [key: string]: unknown;
         };
         /**
          * SwitchView

@@ -190,5 +190,7 @@ def test_no_gesture_is_read_across_a_hole_and_the_timeline_shows_it(
     answer = recognised(client, clip["id"], language).json()
     assert answer["label"] is None
     assert "too little was seen from" in answer["fault"]
+    (unseen,) = answer["unseen"]
+    assert unseen["end"] - unseen["start"] > 1
     ((start, end),) = client.get(f"/api/v1/clips/{clip['id']}/timeline").json()["unseen"]
     assert end - start > 9

@@ -38,6 +38,7 @@ def test_a_result_becomes_plain_json_with_null_where_nothing_can_be_compared() -
         "findings": [],
         "fault": None,
         "fault_kind": None,
+        "unseen": [],
         "voters": ["hu", "zernike"],
         "gestures": ["circle", "line"],
         "distances": [[0.5, 2.0], [0.1, None]],
