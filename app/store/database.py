@@ -119,8 +119,9 @@ class Database:
                 command.upgrade(config, revision)
         except CommandError as error:
             raise StoreUnavailable(
-                f"the database {self._name} was made by a newer version of this program "
-                f"({error}); install that version, or start with another data directory"
+                f"the database {self._name} was made by a newer version of this program, or by "
+                f"an unreleased one ({error}); install that version, or start with another data "
+                "directory"
             ) from error
         except DBAPIError as error:
             remedy = "restore a backup or start with another data directory"

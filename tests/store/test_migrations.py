@@ -16,7 +16,7 @@ from sqlmodel import SQLModel
 from app.api.jobs.extraction_queue import options_of
 from app.clip_sources import ReadOptions
 from app.recognition import Language
-from app.store import ClipStore, Database, LanguageStore, RecognitionStore
+from app.store import ClipStore, Database, LabelledTakeStore, LanguageStore, RecognitionStore
 from app.store.database import MIGRATIONS
 
 
@@ -52,24 +52,6 @@ def test_a_migration_that_breaks_off_leaves_the_database_as_it_was(
     assert "clip" in inspect(database.engine).get_table_names()
 
 
-def test_the_author_of_older_revisions_comes_from_their_documents(tmp_path: Path) -> None:
-    database = Database(f"sqlite:///{tmp_path / 'studio.db'}")
-    config = Config()
-    config.set_main_option("script_location", str(MIGRATIONS))
-    with database.engine.begin() as connection:
-        config.attributes["connection"] = connection
-        command.upgrade(config, "0001")
-        connection.exec_driver_sql(
-            "INSERT INTO language VALUES ('a', 1, 0, '2026-01-01 00:00:00', NULL)"
-        )
-        connection.exec_driver_sql(
-            "INSERT INTO language_revision VALUES "
-            "('a', 1, 'pool', '[]', 'made', '{\"author\": \"Ada\"}', '2026-01-01 00:00:00')"
-        )
-    database.migrate()
-    assert LanguageStore(database).get("a").revision.author == "Ada"
-
-
 def test_older_clips_get_the_source_that_they_came_as(tmp_path: Path) -> None:
     database = Database(f"sqlite:///{tmp_path / 'studio.db'}")
     config = Config()
@@ -102,7 +84,7 @@ def test_older_clips_get_the_source_that_they_came_as(tmp_path: Path) -> None:
     assert options_of(clips["video"].clip) == ReadOptions()
 
 
-@pytest.mark.parametrize("version", ["first", "0.2.0"])
+@pytest.mark.parametrize("version", ["0.1.0", "0.2.0", "0.3.0"])
 def test_a_database_of_a_former_version_keeps_all_that_is_in_it(
     tmp_path: Path, version: str
 ) -> None:
@@ -132,3 +114,5 @@ def test_a_database_of_a_former_version_keeps_all_that_is_in_it(
     (recognised,) = RecognitionStore(database).all(limit=10)
     assert (recognised.clip_id, recognised.start, recognised.expected) == ("c" * 32, 0.5, "circle")
     assert languages.seeded() == {"osg-table"}
+    (take,) = LabelledTakeStore(database).of("a" * 32)
+    assert (take.take.start, take.take.expected) == (0.5, "circle")

@@ -126,10 +126,10 @@ def test_the_recognitions_that_were_the_test_become_the_test_set(tmp_path: Path)
     moment = "2026-01-01 00:00:0"
     with database.engine.begin() as connection:
         config.attributes["connection"] = connection
-        command.upgrade(config, "0007")
+        command.upgrade(config, "0005")
         connection.exec_driver_sql(
-            "INSERT INTO clip (id, name, media_type, size, width, height, topics, source, created) "
-            f"VALUES ('c', 'dive', 'video/mp4', 1, 64, 48, '[]', 'video', '{moment}0')"
+            "INSERT INTO clip (id, name, media_type, size, width, height, topics, created) "
+            f"VALUES ('c', 'dive', 'video/mp4', 1, 64, 48, '[]', '{moment}0')"
         )
         connection.exec_driver_sql(
             "INSERT INTO language (id, head, sample, created) VALUES ('l', 1, 0, ?)",
@@ -147,6 +147,6 @@ def test_the_recognitions_that_were_the_test_become_the_test_set(tmp_path: Path)
                 "INSERT INTO recognition VALUES (?, 'c', 'l', 1, ?, 2.0, 'full', ?, ?, ?)",
                 (name, start, expected, result, f"{moment}{second}"),
             )
-        command.upgrade(config, "0008")
+        command.upgrade(config, "0011")
         found = connection.exec_driver_sql("SELECT start, expected FROM labelled_take").all()
     assert [tuple(row) for row in found] == [(1.0, "line")]

@@ -1,74 +1,120 @@
--- A database of version 0.2.0 (revision 0006), with a row of every kind.
+-- A library of version 0.2.0, written by its own tables, with a row of every kind.
 BEGIN TRANSACTION;
 CREATE TABLE alembic_version (
-	version_num VARCHAR(32) NOT NULL,
+	version_num VARCHAR(32) NOT NULL, 
 	CONSTRAINT alembic_version_pkc PRIMARY KEY (version_num)
 );
-INSERT INTO "alembic_version" VALUES('0006');
+INSERT INTO "alembic_version" VALUES('0011');
+CREATE TABLE audit_entry (
+	id INTEGER NOT NULL, 
+	time DATETIME NOT NULL, 
+	name VARCHAR(80) NOT NULL, 
+	role VARCHAR(16) NOT NULL, 
+	address VARCHAR(64) NOT NULL, 
+	method VARCHAR(16) NOT NULL, 
+	path VARCHAR(300) NOT NULL, 
+	status INTEGER NOT NULL, 
+	request_id VARCHAR(64) NOT NULL, 
+	PRIMARY KEY (id)
+);
+INSERT INTO "audit_entry" VALUES(1,'2026-01-02 03:04:05.000000','boat','edit','127.0.0.1','POST','/api/v1/clips',202,'r');
+CREATE TABLE change_count (
+	id INTEGER NOT NULL, 
+	changes INTEGER NOT NULL, 
+	PRIMARY KEY (id)
+);
+INSERT INTO "change_count" VALUES(1,0);
 CREATE TABLE clip (
-	id VARCHAR(32) NOT NULL,
-	name VARCHAR(200) NOT NULL,
-	media_type VARCHAR(64) NOT NULL,
-	size INTEGER NOT NULL,
-	width INTEGER NOT NULL,
-	height INTEGER NOT NULL,
-	duration FLOAT,
-	frames INTEGER,
-	idempotency_key VARCHAR(255),
-	created DATETIME NOT NULL,
-	deleted DATETIME, topics TEXT DEFAULT '[]' NOT NULL, topic VARCHAR(255), options TEXT, source VARCHAR(16) DEFAULT 'video' NOT NULL,
-	PRIMARY KEY (id),
+	id VARCHAR(32) NOT NULL, 
+	name VARCHAR(200) NOT NULL, 
+	media_type VARCHAR(64) NOT NULL, 
+	size INTEGER NOT NULL, 
+	width INTEGER NOT NULL, 
+	height INTEGER NOT NULL, 
+	duration FLOAT, 
+	frames INTEGER, 
+	idempotency_key VARCHAR(255), 
+	created DATETIME NOT NULL, 
+	deleted DATETIME, topics TEXT DEFAULT '[]' NOT NULL, topic VARCHAR(255), options TEXT, source VARCHAR(16) DEFAULT 'video' NOT NULL, owner VARCHAR(80) DEFAULT '' NOT NULL, 
+	PRIMARY KEY (id), 
 	UNIQUE (idempotency_key)
 );
-INSERT INTO "clip" VALUES('cccccccccccccccccccccccccccccccc','dive ''one''.mp4','video/mp4',1234,640,480,2.5,50,'key-1','2026-01-02 03:04:05.678901',NULL,'[]',NULL,NULL,'video');
-INSERT INTO "clip" VALUES('dddddddddddddddddddddddddddddddd','gone.mp4','video/mp4',1234,640,480,NULL,NULL,NULL,'2026-01-02 03:04:05.678901','2026-01-03 00:00:00.000000','[{"name": "/left"}]','/left',NULL,'bag');
+INSERT INTO "clip" VALUES('cccccccccccccccccccccccccccccccc','dive ''one''.mp4','video/mp4',1234,640,480,2.5,50,'key-1','2026-01-02 03:04:05.678901',NULL,'[]',NULL,NULL,'video','');
+INSERT INTO "clip" VALUES('dddddddddddddddddddddddddddddddd','gone.mp4','video/mp4',1234,640,480,NULL,NULL,NULL,'2026-01-02 03:04:05.678901','2026-01-03 00:00:00.000000','[]',NULL,NULL,'video','');
 CREATE TABLE demonstration_source (
-	trajectory VARCHAR(64) NOT NULL,
-	clip_id VARCHAR(32) NOT NULL,
-	start FLOAT NOT NULL,
-	"end" FLOAT NOT NULL,
-	keep_transit BOOLEAN NOT NULL,
-	PRIMARY KEY (trajectory),
+	trajectory VARCHAR(64) NOT NULL, 
+	clip_id VARCHAR(32) NOT NULL, 
+	start FLOAT NOT NULL, 
+	"end" FLOAT NOT NULL, 
+	keep_transit BOOLEAN NOT NULL, 
+	PRIMARY KEY (trajectory), 
 	FOREIGN KEY(clip_id) REFERENCES clip (id) ON DELETE CASCADE
 );
 INSERT INTO "demonstration_source" VALUES('ffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffff','cccccccccccccccccccccccccccccccc',0.5,1.5,0);
 CREATE TABLE job (
-	id VARCHAR(32) NOT NULL,
-	clip_id VARCHAR(32) NOT NULL,
-	client VARCHAR(64) NOT NULL,
-	status VARCHAR(16) NOT NULL,
-	attempts INTEGER NOT NULL,
-	frames INTEGER,
-	error_code VARCHAR(64),
-	error TEXT,
-	warnings TEXT NOT NULL,
-	created DATETIME NOT NULL,
-	started DATETIME,
-	finished DATETIME,
-	PRIMARY KEY (id),
-	CONSTRAINT job_status CHECK (status IN ('queued', 'running', 'done', 'failed', 'cancelled')),
+	id VARCHAR(32) NOT NULL, 
+	clip_id VARCHAR(32) NOT NULL, 
+	client VARCHAR(64) NOT NULL, 
+	status VARCHAR(16) NOT NULL, 
+	attempts INTEGER NOT NULL, 
+	frames INTEGER, 
+	error_code VARCHAR(64), 
+	error TEXT, 
+	warnings TEXT NOT NULL, 
+	created DATETIME NOT NULL, 
+	started DATETIME, 
+	finished DATETIME, server VARCHAR(32), lease DATETIME, 
+	PRIMARY KEY (id), 
+	CONSTRAINT job_status CHECK (status IN ('queued', 'running', 'done', 'failed', 'cancelled')), 
 	FOREIGN KEY(clip_id) REFERENCES clip (id) ON DELETE CASCADE
 );
-INSERT INTO "job" VALUES('00000000000000000000000000000000','cccccccccccccccccccccccccccccccc','127.0.0.1','done',1,50,NULL,NULL,'["a warning"]','2026-01-02 03:04:06.000000','2026-01-02 03:04:07.000000','2026-01-02 03:04:08.000000');
-INSERT INTO "job" VALUES('11111111111111111111111111111111','dddddddddddddddddddddddddddddddd','127.0.0.1','failed',1,NULL,'decoder','broken','[]','2026-01-02 03:04:06.000000','2026-01-02 03:04:07.000000','2026-01-02 03:04:08.000000');
+INSERT INTO "job" VALUES('00000000000000000000000000000000','cccccccccccccccccccccccccccccccc','127.0.0.1','done',1,50,NULL,NULL,'["a warning"]','2026-01-02 03:04:06.000000','2026-01-02 03:04:07.000000','2026-01-02 03:04:08.000000',NULL,NULL);
+INSERT INTO "job" VALUES('11111111111111111111111111111111','dddddddddddddddddddddddddddddddd','127.0.0.1','failed',1,NULL,'decoder','broken','[]','2026-01-02 03:04:06.000000','2026-01-02 03:04:07.000000','2026-01-02 03:04:08.000000',NULL,NULL);
+CREATE TABLE labelled_result (
+	take_id VARCHAR(32) NOT NULL, 
+	revision INTEGER NOT NULL, 
+	recognition_id VARCHAR(32), 
+	label VARCHAR(200), 
+	nearest VARCHAR(200), 
+	confidence FLOAT NOT NULL, 
+	fault TEXT, 
+	created DATETIME NOT NULL, 
+	PRIMARY KEY (take_id, revision), 
+	FOREIGN KEY(take_id) REFERENCES labelled_take (id) ON DELETE CASCADE
+);
+INSERT INTO "labelled_result" VALUES('bbbbbbbbbbbbbbbbbbbbbbbbbbbbbbbb',1,NULL,'circle','circle',0.9,NULL,'2026-01-02 03:07:05.000000');
+CREATE TABLE labelled_take (
+	id VARCHAR(32) NOT NULL, 
+	language_id VARCHAR(32) NOT NULL, 
+	clip_id VARCHAR(32) NOT NULL, 
+	start FLOAT NOT NULL, 
+	"end" FLOAT NOT NULL, 
+	expected VARCHAR(200) NOT NULL, 
+	created DATETIME NOT NULL, 
+	PRIMARY KEY (id), 
+	FOREIGN KEY(language_id) REFERENCES language (id) ON DELETE CASCADE, 
+	FOREIGN KEY(clip_id) REFERENCES clip (id) ON DELETE CASCADE, 
+	CONSTRAINT labelled_range UNIQUE (language_id, clip_id, start)
+);
+INSERT INTO "labelled_take" VALUES('bbbbbbbbbbbbbbbbbbbbbbbbbbbbbbbb','aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaa','cccccccccccccccccccccccccccccccc',0.5,1.5,'circle','2026-01-02 03:07:05.000000');
 CREATE TABLE language (
-	id VARCHAR(32) NOT NULL,
-	head INTEGER NOT NULL,
-	sample BOOLEAN NOT NULL,
-	created DATETIME NOT NULL,
-	deleted DATETIME,
+	id VARCHAR(32) NOT NULL, 
+	head INTEGER NOT NULL, 
+	sample BOOLEAN NOT NULL, 
+	created DATETIME NOT NULL, 
+	deleted DATETIME, 
 	PRIMARY KEY (id)
 );
-INSERT INTO "language" VALUES('aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaa',2,0,'2026-01-02 03:05:00.000000',NULL);
+INSERT INTO "language" VALUES('aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaa',2,0,'2026-01-02 03:05:05.000000',NULL);
 CREATE TABLE language_revision (
-	language_id VARCHAR(32) NOT NULL,
-	revision INTEGER NOT NULL,
-	name VARCHAR(200) NOT NULL,
-	labels TEXT NOT NULL,
-	change VARCHAR(300) NOT NULL,
-	document TEXT NOT NULL,
-	created DATETIME NOT NULL, author VARCHAR(200) DEFAULT '' NOT NULL,
-	PRIMARY KEY (language_id, revision),
+	language_id VARCHAR(32) NOT NULL, 
+	revision INTEGER NOT NULL, 
+	name VARCHAR(200) NOT NULL, 
+	labels TEXT NOT NULL, 
+	change VARCHAR(300) NOT NULL, 
+	document TEXT NOT NULL, 
+	created DATETIME NOT NULL, author VARCHAR(200) DEFAULT '' NOT NULL, 
+	PRIMARY KEY (language_id, revision), 
 	FOREIGN KEY(language_id) REFERENCES language (id) ON DELETE CASCADE
 );
 INSERT INTO "language_revision" VALUES('aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaa',1,'pool','[]','Created','{
@@ -76,12 +122,12 @@ INSERT INTO "language_revision" VALUES('aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaa',1,'poo
 "version": 1,
 "name": "pool",
 "author": "Ada",
-"created": "2026-11-22T23:44:09Z",
+"created": "2026-11-29T12:58:56Z",
 "revision": 1,
 "skeleton": [["left_shoulder","right_shoulder"],["left_shoulder","left_elbow"],["left_elbow","left_wrist"],["right_shoulder","right_elbow"],["right_elbow","right_wrist"],["left_wrist","left_index"],["left_wrist","left_pinky"],["left_wrist","left_thumb"],["right_wrist","right_index"],["right_wrist","right_pinky"],["right_wrist","right_thumb"],["left_shoulder","left_hip"],["right_shoulder","right_hip"],["left_hip","right_hip"],["left_hip","left_knee"],["left_knee","left_ankle"],["right_hip","right_knee"],["right_knee","right_ankle"],["left_ankle","left_foot_index"],["right_ankle","right_foot_index"]],
 "settings": {"image_size":224,"image_margin":16,"stroke_width":9,"simplification":4.0,"min_extent":0.1,"max_moments":100,"closing_diameter":28,"hu_floor":0.01,"zernike_degree":8,"fourier_samples":256,"fourier_harmonics":10},
 "gestures": [],
-"sha256": "f984c8cf791ef5870f1a21e7964fc177008dc072a82613d5bef3242b2ca27901"
+"sha256": "b7d2de0ba003a51fcf84e4e429daece0801fb9cc2a66d6943bc9c67783382f75"
 }
 ','2026-01-02 03:05:01.000000','Ada');
 INSERT INTO "language_revision" VALUES('aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaa',2,'pool','[]','Renamed','{
@@ -89,36 +135,59 @@ INSERT INTO "language_revision" VALUES('aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaa',2,'poo
 "version": 1,
 "name": "pool",
 "author": "Ada",
-"created": "2026-11-22T23:44:09Z",
-"revision": 1,
+"created": "2026-11-29T12:58:56Z",
+"revision": 2,
 "skeleton": [["left_shoulder","right_shoulder"],["left_shoulder","left_elbow"],["left_elbow","left_wrist"],["right_shoulder","right_elbow"],["right_elbow","right_wrist"],["left_wrist","left_index"],["left_wrist","left_pinky"],["left_wrist","left_thumb"],["right_wrist","right_index"],["right_wrist","right_pinky"],["right_wrist","right_thumb"],["left_shoulder","left_hip"],["right_shoulder","right_hip"],["left_hip","right_hip"],["left_hip","left_knee"],["left_knee","left_ankle"],["right_hip","right_knee"],["right_knee","right_ankle"],["left_ankle","left_foot_index"],["right_ankle","right_foot_index"]],
 "settings": {"image_size":224,"image_margin":16,"stroke_width":9,"simplification":4.0,"min_extent":0.1,"max_moments":100,"closing_diameter":28,"hu_floor":0.01,"zernike_degree":8,"fourier_samples":256,"fourier_harmonics":10},
 "gestures": [],
-"sha256": "f984c8cf791ef5870f1a21e7964fc177008dc072a82613d5bef3242b2ca27901"
+"sha256": "ad0fa9a4a7e7a1829cdd12228f64db8c187ca3fc1d806c30c6dcded1b7fa62ce"
 }
 ','2026-01-02 03:05:02.000000','Ada');
+CREATE TABLE practice_take (
+	id VARCHAR(32) NOT NULL, 
+	language_id VARCHAR(32) NOT NULL, 
+	clip_id VARCHAR(32) NOT NULL, 
+	start FLOAT NOT NULL, 
+	diver VARCHAR(80) NOT NULL, 
+	expected VARCHAR(200) NOT NULL, 
+	label VARCHAR(200), 
+	revision INTEGER NOT NULL, 
+	recognition_id VARCHAR(32) NOT NULL, 
+	created DATETIME NOT NULL, 
+	PRIMARY KEY (id), 
+	FOREIGN KEY(language_id) REFERENCES language (id) ON DELETE CASCADE, 
+	FOREIGN KEY(clip_id) REFERENCES clip (id) ON DELETE CASCADE
+);
+INSERT INTO "practice_take" VALUES('99999999999999999999999999999999','aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaa','cccccccccccccccccccccccccccccccc',0.5,'Ana','circle','circle',1,'eeeeeeeeeeeeeeeeeeeeeeeeeeeeeeee','2026-01-02 03:08:05.000000');
 CREATE TABLE recognition (
-	id VARCHAR(32) NOT NULL,
-	clip_id VARCHAR(32) NOT NULL,
-	language_id VARCHAR(32) NOT NULL,
-	revision INTEGER NOT NULL,
-	start FLOAT NOT NULL,
-	"end" FLOAT NOT NULL,
-	profile VARCHAR(32) NOT NULL,
-	expected VARCHAR(200),
-	result TEXT NOT NULL,
-	created DATETIME NOT NULL,
-	PRIMARY KEY (id),
-	FOREIGN KEY(clip_id) REFERENCES clip (id) ON DELETE CASCADE,
+	id VARCHAR(32) NOT NULL, 
+	clip_id VARCHAR(32) NOT NULL, 
+	language_id VARCHAR(32) NOT NULL, 
+	revision INTEGER NOT NULL, 
+	start FLOAT NOT NULL, 
+	"end" FLOAT NOT NULL, 
+	profile VARCHAR(32) NOT NULL, 
+	expected VARCHAR(200), 
+	result TEXT NOT NULL, 
+	created DATETIME NOT NULL, 
+	PRIMARY KEY (id), 
+	FOREIGN KEY(clip_id) REFERENCES clip (id) ON DELETE CASCADE, 
 	FOREIGN KEY(language_id) REFERENCES language (id) ON DELETE CASCADE
 );
-INSERT INTO "recognition" VALUES('eeeeeeeeeeeeeeeeeeeeeeeeeeeeeeee','cccccccccccccccccccccccccccccccc','aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaa',2,0.5,1.5,'full','circle','{"label": null, "nearest": "circle"}','2026-01-02 03:06:00.000000');
+INSERT INTO "recognition" VALUES('eeeeeeeeeeeeeeeeeeeeeeeeeeeeeeee','cccccccccccccccccccccccccccccccc','aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaa',1,0.5,1.5,'full','circle','{}','2026-01-02 03:06:05.000000');
 CREATE TABLE seeded_sample (
-	name VARCHAR(200) NOT NULL,
-	created DATETIME NOT NULL,
+	name VARCHAR(200) NOT NULL, 
+	created DATETIME NOT NULL, 
 	PRIMARY KEY (name)
 );
-INSERT INTO "seeded_sample" VALUES('osg-table','2026-01-02 03:00:00.000000');
+INSERT INTO "seeded_sample" VALUES('osg-table','2026-01-02 03:04:05.000000');
+CREATE TABLE upload_reservation (
+	id VARCHAR(32) NOT NULL, 
+	owner VARCHAR(80) NOT NULL, 
+	size INTEGER NOT NULL, 
+	touched DATETIME NOT NULL, 
+	PRIMARY KEY (id)
+);
 CREATE INDEX ix_clip_created ON clip (created);
 CREATE INDEX ix_language_created ON language (created);
 CREATE INDEX ix_job_clip_id ON job (clip_id);
@@ -128,4 +197,11 @@ CREATE INDEX ix_recognition_clip_id ON recognition (clip_id);
 CREATE INDEX ix_recognition_created ON recognition (created);
 CREATE INDEX ix_recognition_language_id ON recognition (language_id);
 CREATE INDEX ix_demonstration_source_clip_id ON demonstration_source (clip_id);
+CREATE INDEX ix_clip_owner ON clip (owner);
+CREATE INDEX ix_audit_entry_name ON audit_entry (name);
+CREATE INDEX ix_labelled_take_language_id ON labelled_take (language_id);
+CREATE INDEX ix_labelled_take_clip_id ON labelled_take (clip_id);
+CREATE INDEX ix_practice_take_language_id ON practice_take (language_id);
+CREATE INDEX ix_practice_take_clip_id ON practice_take (clip_id);
+CREATE INDEX ix_upload_reservation_owner ON upload_reservation (owner);
 COMMIT;

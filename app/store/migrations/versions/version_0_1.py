@@ -1,14 +1,14 @@
-"""Migration: the first tables (clips, jobs, languages, revisions, recognitions, samples)."""
+"""Migration: the tables of version 0.1.0, of clips, jobs, languages and recognitions."""
 
 import sqlalchemy as sa
 from alembic import op
 
-revision = "0001"
+revision = "0005"
 down_revision = None
 
 
 def upgrade() -> None:
-    """Make the tables of clips, jobs, languages and recognitions."""
+    """Make the tables."""
     op.create_table(
         "clip",
         sa.Column("id", sa.String(length=32), primary_key=True),
@@ -19,6 +19,9 @@ def upgrade() -> None:
         sa.Column("height", sa.Integer(), nullable=False),
         sa.Column("duration", sa.Float(), nullable=True),
         sa.Column("frames", sa.Integer(), nullable=True),
+        sa.Column("topics", sa.Text(), nullable=False, server_default="[]"),
+        sa.Column("topic", sa.String(255), nullable=True),
+        sa.Column("keypoints", sa.Text(), nullable=True),
         sa.Column("idempotency_key", sa.String(length=255), nullable=True, unique=True),
         sa.Column("created", sa.DateTime(), nullable=False, index=True),
         sa.Column("deleted", sa.DateTime(), nullable=True),
@@ -65,6 +68,7 @@ def upgrade() -> None:
         sa.Column("name", sa.String(length=200), nullable=False),
         sa.Column("labels", sa.Text(), nullable=False),
         sa.Column("change", sa.String(length=300), nullable=False),
+        sa.Column("author", sa.String(200), nullable=False, server_default=""),
         sa.Column("document", sa.Text(), nullable=False),
         sa.Column("created", sa.DateTime(), nullable=False),
         sa.ForeignKeyConstraint(["language_id"], ["language.id"], ondelete="CASCADE"),
@@ -83,4 +87,13 @@ def upgrade() -> None:
         sa.Column("created", sa.DateTime(), nullable=False, index=True),
         sa.ForeignKeyConstraint(["clip_id"], ["clip.id"], ondelete="CASCADE"),
         sa.ForeignKeyConstraint(["language_id"], ["language.id"], ondelete="CASCADE"),
+    )
+    op.create_table(
+        "demonstration_source",
+        sa.Column("trajectory", sa.String(64), primary_key=True),
+        sa.Column("clip_id", sa.String(32), nullable=False, index=True),
+        sa.Column("start", sa.Float(), nullable=False),
+        sa.Column("end", sa.Float(), nullable=False),
+        sa.Column("keep_transit", sa.Boolean(), nullable=False),
+        sa.ForeignKeyConstraint(["clip_id"], ["clip.id"], ondelete="CASCADE"),
     )

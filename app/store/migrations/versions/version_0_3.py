@@ -1,16 +1,34 @@
-"""Migration: invitations, by which other people add takes to a language, and these takes."""
+"""Migration: version 0.3.0, with owners of documents, sessions, pairs and invitations."""
 
 import sqlalchemy as sa
 from alembic import op
 
 revision = "0016"
-down_revision = "0015"
+down_revision = "0011"
 
+_DOCUMENTS = {"language_revision": "document", "recognition": "result"}
 _BYTES = sa.BigInteger().with_variant(sa.Integer(), "sqlite")
 
 
 def upgrade() -> None:
-    """Make the tables."""
+    """Make the tables and columns; nobody owns the documents so far."""
+    for table, document in _DOCUMENTS.items():
+        op.add_column(table, sa.Column("owner", sa.String(80), nullable=False, server_default=""))
+        op.add_column(table, sa.Column("size", _BYTES, nullable=False, server_default="0"))
+        op.create_index(f"ix_{table}_owner", table, ["owner"])
+        # The number of characters: these documents are ASCII but for names.
+        op.execute(f"UPDATE {table} SET size = length({document})")
+    op.create_table(
+        "sign_in",
+        sa.Column("id", sa.String(64), primary_key=True),
+        sa.Column("name", sa.String(80), nullable=False, index=True),
+        sa.Column("proof", sa.String(64), nullable=False),
+        sa.Column("created", sa.DateTime(), nullable=False, index=True),
+    )
+    for table in ("labelled_result", "practice_take"):
+        op.add_column(table, sa.Column("pair", sa.Text(), nullable=True))
+    column = sa.Column("salute_warnings", sa.Text(), nullable=False, server_default="[]")
+    op.add_column("job", column)
     op.create_table(
         "invitation",
         sa.Column("id", sa.String(32), primary_key=True),
