@@ -59,7 +59,7 @@ class ReadOptions(BaseModel):
     turn
         By how much pictures are turned before; players then show a turned copy.
     chapters
-        Bytes of each chapter of a recording, which follow each other in the file; empty for others.
+        Bytes of each chapter of which the video was joined when it was received; empty for others.
 
     """
 

@@ -134,6 +134,11 @@ class Clip(_OwnedRow, table=True):
         return int(json.loads(self.options or "{}").get("turn", 0))
 
     @property
+    def received_size(self) -> int:
+        """Bytes that were sent: those of the chapters, if the file was joined of them."""
+        return sum(json.loads(self.options or "{}").get("chapters", ())) or self.size
+
+    @property
     def needs_topic(self) -> bool:
         """Whether somebody must choose a topic before its job can begin."""
         return self.topics != "[]" and self.topic is None

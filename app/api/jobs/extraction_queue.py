@@ -22,6 +22,7 @@ from app.api.workers.worker_messages import Failed, Finished, Progress
 from app.api.workers.worker_processes import Workers
 from app.clip_sources import ReadOptions
 from app.settings import Settings
+from app.store.atomic_files import PARTIAL_SUFFIX
 from app.store.clips import FILMSTRIP, POSTER, RECORDING, SO_FAR
 
 RENEW_SECONDS = 10.0
@@ -205,7 +206,10 @@ class ExtractionQueue:
                     failed = partial(self._jobs.finish, code=code, error=detail)
                     await persist(failed, job.id, store.JobStatus.FAILED)
         finally:
-            so_far.unlink(missing_ok=True)
+            # A process that died leaves what it was writing.
+            written = [each.with_suffix(PARTIAL_SUFFIX) for each in task.files.outputs]
+            for left in (so_far, *written, *so_far.parent.glob(f".*{PARTIAL_SUFFIX}")):
+                left.unlink(missing_ok=True)
         return ended
 
     async def _give_up(self, job_id: str) -> None:

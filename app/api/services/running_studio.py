@@ -132,6 +132,8 @@ class Studio:
         Limits those that never take seconds, see `computed_briefly`.
     edits
         Limits the edits of languages at the same time, see `edited`.
+    joining
+        Lets one upload of chapters be joined at a time.
     exports
         Written files that wait to be fetched.
 
@@ -174,6 +176,7 @@ class Studio:
         self.computations = asyncio.Semaphore(MOST_COMPUTATIONS)
         self.brief_computations = asyncio.Semaphore(MOST_COMPUTATIONS)
         self.edits = asyncio.Semaphore(MOST_EDITS)
+        self.joining = asyncio.Semaphore()
         self.exports = KeptExports()
 
     def _hear(self, event: BroadcastEvent) -> None:
