@@ -23,7 +23,7 @@ from app.recognition.errors import OsgError
 from app.recognition.estimation import finds_hands
 from app.recognition.recording.chapters import chapters_in, join_chapters
 from app.recognition.recording.file_kinds import HEAD_BYTES, video_type
-from app.recognition.recording.video import FrameReader, probe, read_frames
+from app.recognition.recording.video import FrameReader, probe
 
 
 class VideoSource(ClipSource):
@@ -65,7 +65,7 @@ class VideoSource(ClipSource):
     def probe(self, path: Path, options: ReadOptions) -> ClipFacts:
         """Read the container's facts, and decode one frame."""
         with _one_file(path) as file:
-            info = probe(file, turn=options.turn)
+            info = probe(file, options.limits, options.turn)
         return ClipFacts(info.width, info.height, info.duration, info.frames)
 
     def shows_pictures(self, path: Path, options: ReadOptions) -> bool:
@@ -76,7 +76,7 @@ class VideoSource(ClipSource):
         self, path: Path, options: ReadOptions, *, video: Path | None = None, **how: Unpack[Reading]
     ) -> RecordedClip:
         """Find body and hands in every frame."""
-        with _one_file(path) as file, read_frames(file, turn=options.turn) as frames:
+        with _one_file(path) as file, _open(file, options) as frames:
             found = record_and_copy(frames, video, options.water, **how)
         estimator = how.get("estimator")
         has_hands = estimator is None or finds_hands(estimator)
@@ -91,13 +91,13 @@ class VideoSource(ClipSource):
         with _one_file(path) as file:
             if not options.turn:
                 return path if file == path else Path(shutil.copyfile(file, copy))
-            with read_frames(file, turn=options.turn) as frames:
+            with _open(file, options) as frames:
                 copy_frames(frames, copy)
         return copy
 
     def open_frames(self, path: Path, options: ReadOptions) -> OpenFrames:
         """Open the file for decoding."""
-        reader = FrameReader(path, turn=options.turn)
+        reader = _open(path, options)
         return OpenFrames(reader, reader.close)
 
 
@@ -114,6 +114,10 @@ class ChaptersSource(VideoSource):
     def accepts_upload(self, head: bytes, name: str) -> bool:
         """Return False: a folder is not received."""
         return False
+
+
+def _open(file: Path, options: ReadOptions) -> FrameReader:
+    return FrameReader(file, options.limits, options.turn)
 
 
 @contextmanager

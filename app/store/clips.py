@@ -129,7 +129,7 @@ class ClipStore(DatabaseStore):
 
         What is left there goes.
         """
-        with tempfile.TemporaryDirectory(prefix=".received-", dir=self.folder) as folder:
+        with tempfile.TemporaryDirectory(PARTIAL_SUFFIX, dir=self.folder) as folder:
             yield Path(folder, "received")
 
     def add(

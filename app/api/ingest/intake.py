@@ -46,7 +46,12 @@ class Inspected:
 
 
 def client_of(request: Request) -> str:
-    """Return the client's address, to which the queue limit applies."""
+    """Return to whom the queue limit applies: an invitation, or an address.
+
+    People who were invited may have the address of their host.
+    """
+    if (invitation := getattr(request.state, "invitation", None)) is not None:
+        return f"invitation {invitation.id}"
     return request.client.host[:64] if request.client else "local"
 
 
@@ -109,7 +114,12 @@ async def joined(
 
 
 async def inspect(
-    partial: Path, studio: Studio, *, name: str, fields: UploadFields | None = None
+    partial: Path,
+    studio: Studio,
+    *,
+    name: str,
+    fields: UploadFields | None = None,
+    one_take: bool = False,
 ) -> Inspected:
     """Probe a received file.
 
@@ -124,6 +134,8 @@ async def inspect(
     fields
         Values from its sender. Without a topic, the only one of a dive recording is taken, or the
         topic is chosen later.
+    one_take
+        See `ReadOptions.one_take`.
 
     Raises
     ------
@@ -135,12 +147,13 @@ async def inspect(
     if (size := partial.stat().st_size) == 0:
         raise ProblemError(422, "video_unreadable", f"{name} is empty; record or export it again")
     given = fields or UploadFields()
+    wanted = given.options.model_copy(update={"one_take": one_take})
     head = await run_in_threadpool(_head, partial)
     candidates = sources_of_upload(head, name)
     for source in candidates:
         if given.topic is not None and not source.has_topics:
             continue
-        options = source.upload_options(head, name, given.options)
+        options = source.upload_options(head, name, wanted)
         probed = await studio.workers.probe(source, partial, options)
         if isinstance(probed, Probed):
             clip = Clip(

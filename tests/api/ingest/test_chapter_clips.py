@@ -166,9 +166,7 @@ def test_the_quota_of_joining_is_reserved_before(settings: Settings) -> None:
         assert client.post(UPLOADS, headers=headers).status_code == 201
 
 
-def test_joining_that_fails_leaves_nothing(
-    chapters: tuple[Path, str], settings: Settings
-) -> None:
+def test_joining_that_fails_leaves_nothing(chapters: tuple[Path, str], settings: Settings) -> None:
     whole, sizes = chapters
     content = whole.read_bytes()
     limits = Limits(worker_file_bytes=len(content) // 4)
