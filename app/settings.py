@@ -107,7 +107,8 @@ class Limits(BaseModel):
     """Waiting jobs allowed for one address: enough for the clips of a language."""
 
     worker_memory_bytes: Annotated[int, Field(ge=0)] = 6 * 1024 * MEBIBYTE
-    """Address space of one worker in bytes; 0 for no limit, which GPU providers need."""
+    """Address space of one worker in bytes, and memory of all together for each of `workers`; 0 for
+    no limit, which GPU providers need."""
 
     worker_cpu_seconds: Annotated[int, Field(ge=0)] = 2 * 60 * 60
     """Processor time of one job; 0 is no limit. A slow machine takes 80 ms a frame, so that the
@@ -184,8 +185,9 @@ class Settings(BaseSettings):
     ``off`` never."""
 
     workers: Annotated[int, Field(ge=1, le=64)] = 1
-    """Clips extracted at the same time, each in its own process (the models use all cores); with
-    `executor`, this server's extractions on all machines."""
+    """Clips extracted at the same time, each in its own process (the models use all cores), and one
+    more if another person's would wait; with `executor`, this server's extractions on all
+    machines."""
 
     executor: Annotated[str, Field(pattern=r"^dask://[^/\s]+:\d+$")] | None = None
     """Where extractions, checks, test runs and exports run: ``None`` is this machine;

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import base64
 import random
 import time
 from collections import Counter
@@ -17,6 +18,9 @@ API: Final = "/api/v1"
 
 MOST_CLIPS = 12
 """Number of clips to keep; further ones are deleted, a change that is checked too."""
+
+UNDONE: Final = 0.1
+"""Share of the changes of clips that bring a deleted one back, if there is one."""
 
 TUS: Final = {"Tus-Resumable": "1.0.0"}
 
@@ -49,6 +53,8 @@ class Written:
         Number of backups that were restored and compared.
     acknowledged
         Number of changes.
+    joined, undone
+        Number of uploads of chapters, and of deletions that were undone, among them.
     refused
         Number of uploads that were refused because the process that probed them was killed.
     lost
@@ -71,6 +77,8 @@ class Written:
     audited: int = 0
     backups: int = 0
     acknowledged: int = 0
+    joined: int = 0
+    undone: int = 0
     refused: int = 0
     lost: list[str] = field(default_factory=list)
     kills: Counter[str] = field(default_factory=Counter)
@@ -115,9 +123,19 @@ def import_file(client: httpx.Client, written: Written, draw: random.Random) -> 
 
 
 def upload(client: httpx.Client, written: Written, draw: random.Random, clip: bytes) -> None:
-    """Add a clip at once or in two parts, or delete one."""
+    """Add a clip at once, in two parts or of two chapters; delete one, or undo that."""
+    gone = [
+        key for key, state in written.clips.items() if not state and key not in written.deleting
+    ]
     kept = [key for key, state in written.clips.items() if state and key not in written.deleting]
-    if len(kept) >= MOST_CLIPS:
+    if gone and draw.random() < UNDONE:
+        chosen = draw.choice(gone)
+        written.deleting.add(chosen)
+        client.post(f"{API}/clips/{chosen}/restore").raise_for_status()
+        written.clips[chosen] = True
+        written.deleting.discard(chosen)
+        written.undone += 1
+    elif len(kept) >= MOST_CLIPS:
         chosen = draw.choice(kept)
         written.deleting.add(chosen)
         client.delete(f"{API}/clips/{chosen}").raise_for_status()
@@ -127,11 +145,17 @@ def upload(client: httpx.Client, written: Written, draw: random.Random, clip: by
         answer = client.post(f"{API}/clips", files={"file": ("dive.mkv", clip)})
         written.clips[answer.raise_for_status().json()["id"]] = True
     else:
-        begun = client.post(f"{API}/uploads", headers=TUS | {"Upload-Length": str(len(clip))})
-        place = begun.raise_for_status().headers["location"]
+        chapters = {}
+        if draw.random() < 0.5:
+            sizes = base64.b64encode(f"{len(clip)},{len(clip)}".encode()).decode()
+            chapters = {"Upload-Metadata": f"chapters {sizes}"}
+            clip = clip + clip
+        announced = TUS | {"Upload-Length": str(len(clip))} | chapters
+        place = client.post(f"{API}/uploads", headers=announced).raise_for_status()
         half = len(clip) // 2
         for start, part in ((0, clip[:half]), (half, clip[half:])):
-            answer = _send(client, place, start, part)
+            answer = _send(client, place.headers["location"], start, part)
+        written.joined += bool(chapters)
         written.clips[answer.headers["content-location"].rpartition("/")[2]] = True
     written.acknowledged += 1
 

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, Literal
 
 from app.bags.bag_kind import METADATA, split_parts
-from app.bags.mcap_chunks import limit_chunks, require_little_overlap
+from app.bags.mcap_chunks import MOST_UNPACKED, limit_unpacking, require_little_overlap, too_large
 from app.bags.session_reader import TOPICS as SESSION_TOPICS
 from app.bags.session_reader import SessionReader, is_session
 from app.bags.staging import stage
@@ -295,7 +295,7 @@ def open_bag(path: str | Path) -> Iterator[Bag]:
     place = Path(path)
     with explain_missing_package(f"the dive recording {place.name}", *NEEDED):
         from rosbags.rosbag2 import Reader
-    limit_chunks()
+    limit_unpacking()
     with ExitStack() as open_things:
         found = open_things.enter_context(stage(place))
         with _convert_errors(found, place.name):
@@ -416,6 +416,8 @@ def _convert_errors(place: Path, name: str) -> Iterator[None]:
     except Exception as error:
         reason = str(error).splitlines()[0] if str(error) else type(error).__name__
         reason = reason.replace(str(place), name)
+        if type(error).__name__ == "TooBigError":  # SQLite's, of the limit of a row
+            raise too_large(MOST_UNPACKED) from error
         if "rofile is not ros2" in reason:
             raise BagError(
                 f"{name} is an MCAP file of another program, not a ROS 2 recording (of ROS 1, or "

@@ -17,6 +17,7 @@ from app.recognition.errors import OsgError
 from app.recognition.estimation.water import WaterCorrection
 from app.recognition.recording.recording import Recording
 from app.recognition.recording.video import FrameSource, Turn
+from app.recognition.recording.video_limits import TAKE, VideoLimits
 
 MADE_VIDEO: Final = "video/mp4"
 """Media type of the video that is written for a clip whose file is no video."""
@@ -58,8 +59,10 @@ class ReadOptions(BaseModel):
         Whether colour and contrast are corrected before landmarks are found.
     turn
         By how much pictures are turned before; players then show a turned copy.
+    one_take
+        Whether it is one gesture of somebody who was invited, with closer `limits`.
     chapters
-        Bytes of each chapter of a recording, which follow each other in the file; empty for others.
+        Bytes of each chapter of which the video was joined when it was received; empty for others.
 
     """
 
@@ -73,7 +76,13 @@ class ReadOptions(BaseModel):
     keypoint_set: str | None = None
     water: WaterCorrection = "auto"
     turn: Turn = 0
+    one_take: bool = False
     chapters: tuple[int, ...] = ()
+
+    @property
+    def limits(self) -> VideoLimits:
+        """The largest video that is read."""
+        return TAKE if self.one_take else VideoLimits()
 
     @property
     def keypoints(self) -> KeypointOptions:

@@ -6,7 +6,6 @@ import shutil
 import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
-from itertools import accumulate
 from pathlib import Path
 
 from typing_extensions import Unpack
@@ -20,11 +19,11 @@ from app.clip_sources.source import (
     RecordedClip,
     Refusal,
 )
-from app.recognition.errors import OsgError, VideoError
+from app.recognition.errors import OsgError
 from app.recognition.estimation import finds_hands
 from app.recognition.recording.chapters import chapters_in, join_chapters
 from app.recognition.recording.file_kinds import HEAD_BYTES, video_type
-from app.recognition.recording.video import ByteRange, FrameReader, probe, read_frames
+from app.recognition.recording.video import FrameReader, probe
 
 
 class VideoSource(ClipSource):
@@ -65,8 +64,8 @@ class VideoSource(ClipSource):
 
     def probe(self, path: Path, options: ReadOptions) -> ClipFacts:
         """Read the container's facts, and decode one frame."""
-        with _one_file(path, options) as file:
-            info = probe(file, turn=options.turn)
+        with _one_file(path) as file:
+            info = probe(file, options.limits, options.turn)
         return ClipFacts(info.width, info.height, info.duration, info.frames)
 
     def shows_pictures(self, path: Path, options: ReadOptions) -> bool:
@@ -77,10 +76,7 @@ class VideoSource(ClipSource):
         self, path: Path, options: ReadOptions, *, video: Path | None = None, **how: Unpack[Reading]
     ) -> RecordedClip:
         """Find body and hands in every frame."""
-        with _one_file(path, options) as file, read_frames(file, turn=options.turn) as frames:
-            if video is not None and not options.turn:
-                shutil.copyfile(file, video)
-                video = None
+        with _one_file(path) as file, _open(file, options) as frames:
             found = record_and_copy(frames, video, options.water, **how)
         estimator = how.get("estimator")
         has_hands = estimator is None or finds_hands(estimator)
@@ -92,46 +88,45 @@ class VideoSource(ClipSource):
 
     def playable_video(self, path: Path, options: ReadOptions, copy: Path) -> Path | None:
         """Return the file itself, or write a copy whose pictures are joined or turned."""
-        with _one_file(path, options) as file:
+        with _one_file(path) as file:
             if not options.turn:
                 return path if file == path else Path(shutil.copyfile(file, copy))
-            with read_frames(file, turn=options.turn) as frames:
+            with _open(file, options) as frames:
                 copy_frames(frames, copy)
         return copy
 
     def open_frames(self, path: Path, options: ReadOptions) -> OpenFrames:
         """Open the file for decoding."""
-        reader = FrameReader(path, turn=options.turn)
+        reader = _open(path, options)
         return OpenFrames(reader, reader.close)
 
 
 class ChaptersSource(VideoSource):
-    """A folder of one recording's chapters, or a file of `ReadOptions.chapters`; read as one."""
+    """A folder of one recording's chapters, read as one; those that are received are joined."""
 
     name = "chapters"
     endings = ()
-    probe_seconds = 120.0
-    """Longest time to probe, which joins them: the largest file allowed at 20 MB/s."""
 
     def accepts(self, path: Path, topic: str | None = None) -> bool:
         """Return whether a folder holds the chapters of one recording, and nothing else."""
         return topic is None and path.is_dir() and bool(chapters_in(path))
 
+    def accepts_upload(self, head: bytes, name: str) -> bool:
+        """Return False: a folder is not received."""
+        return False
+
+
+def _open(file: Path, options: ReadOptions) -> FrameReader:
+    return FrameReader(file, options.limits, options.turn)
+
 
 @contextmanager
-def _one_file(path: Path, options: ReadOptions) -> Iterator[Path]:
-    """Yield a video itself, or for a while the one into which its chapters are joined."""
-    if not path.is_dir() and not options.chapters:
+def _one_file(path: Path) -> Iterator[Path]:
+    """Yield a video itself, or for a while the one into which a folder's chapters are joined."""
+    if not path.is_dir():
         yield path
         return
-    ends = [*accumulate(options.chapters)] or [0]
-    ranges = zip([0, *ends], ends, strict=False)
-    chapters: list[tuple[Path, ByteRange | None]] = [(path, each) for each in ranges]
-    if path.is_dir():
-        chapters = [(each, None) for each in chapters_in(path)]
-    elif ends[-1] != path.stat().st_size:
-        raise VideoError(f"{path.name} is not as long as the chapters that it is said to hold")
     with tempfile.TemporaryDirectory(prefix="chapters-") as made:
         joined = Path(made, "joined")
-        join_chapters(chapters, joined)
+        join_chapters([(each, None) for each in chapters_in(path)], joined)
         yield joined

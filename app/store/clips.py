@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import shutil
+import tempfile
 from collections.abc import Collection, Iterator
 from contextlib import AbstractContextManager, contextmanager, suppress
 from dataclasses import dataclass
@@ -123,12 +124,12 @@ class ClipStore(DatabaseStore):
 
     @contextmanager
     def receiving(self) -> Iterator[Path]:
-        """Yield a fresh path for a file that is received meanwhile; what is left there goes."""
-        partial = self.new_partial()
-        try:
-            yield partial
-        finally:
-            partial.unlink(missing_ok=True)
+        """Yield a path, in a folder of its own, for a file that is received or joined meanwhile.
+
+        What is left there goes.
+        """
+        with tempfile.TemporaryDirectory(PARTIAL_SUFFIX, dir=self.folder) as folder:
+            yield Path(folder, "received")
 
     def add(
         self,

@@ -151,6 +151,11 @@ class Clip(_OwnedRow, table=True):
         return int((self.options or {}).get("turn", 0))
 
     @property
+    def received_size(self) -> int:
+        """Bytes that were sent: those of the chapters, if the file was joined of them."""
+        return sum(json.loads(self.options or "{}").get("chapters", ())) or self.size
+
+    @property
     def needs_topic(self) -> bool:
         """Whether somebody must choose a topic before its job can begin."""
         return bool(self.topics) and self.topic is None

@@ -185,7 +185,7 @@ class QuotaStore(DatabaseStore):
         with self._database.writing(counted=False) as session:
             over = moment_of(session) - KEPT
             session.execute(delete(UploadReservation).where(col(UploadReservation.touched) < over))
-            quota.require_in(session, upload.size, clips=1)
+            quota.require_in(session, upload.room, clips=1)
             session.add(_reservation(upload, session))
 
     def renew(self, upload: Upload) -> None:
@@ -250,7 +250,7 @@ def release_in(session: Session, upload_id: str) -> None:
 
 def _reservation(upload: Upload, session: Session) -> UploadReservation:
     return UploadReservation(
-        id=upload.id, owner=upload.owner, size=upload.size, touched=moment_of(session)
+        id=upload.id, owner=upload.owner, size=upload.room, touched=moment_of(session)
     )
 
 

@@ -62,12 +62,22 @@ class Upload:
         return self.path.stat().st_size
 
     @property
-    def missing(self) -> int:
-        """Number of bytes still missing; none if the upload has ended meanwhile."""
+    def room(self) -> int:
+        """Number of bytes that it takes at most: chapters are joined beside what was received."""
+        return room_of(self.size, joined=bool(self.fields.get("chapters")))
+
+    @property
+    def to_come(self) -> int:
+        """Number of bytes that it may still take; none if the upload has ended meanwhile."""
         try:
-            return max(self.size - self.offset, 0)
+            return max(self.room - self.offset, 0)
         except FileNotFoundError:
             return 0
+
+
+def room_of(size: int, *, joined: bool) -> int:
+    """Return how many bytes a received file takes until its clip stands, if it must be joined."""
+    return 2 * size if joined else size
 
 
 class UploadStore:

@@ -72,7 +72,7 @@ _FILTERED: Final = {"x86_64": 0xC000_003E, "aarch64": 0xC000_00B7}
 _DENIED: Final = {
     "x86_64": (
         41,  # socket
-        57, 58,  # fork, vfork
+        57, 58, 59, 322,  # fork, vfork, execve, execveat
         90, 91, 268,  # chmod, fchmod, fchmodat
         92, 93, 94, 260,  # chown, fchown, lchown, fchownat
         132, 235, 261, 280,  # utime, utimes, futimesat, utimensat
@@ -85,6 +85,7 @@ _DENIED: Final = {
     ),
     "aarch64": (
         198,  # socket
+        221, 281,  # execve, execveat
         52, 53,  # fchmod, fchmodat
         54, 55,  # fchownat, fchown
         88,  # utimensat

@@ -51,7 +51,7 @@ MEANINGS = {
     "request_invalid": "a parameter or the body is not valid; `errors` lists each fault",
     "revision_conflict": "the language has a newer revision than `If-Match`",
     "server_stopping": "the server is shutting down",
-    "service_unavailable": "no further viser workspace can be opened now",
+    "service_unavailable": "no further viser workspace can be opened, or recording be read, now",
     "storage_unavailable": "the server's storage cannot be read or written",
     "store_unavailable": "the database, the audit log or the list of tokens cannot be used now",
     "take_ambiguous": "the range holds several takes",

@@ -4,6 +4,8 @@ from pathlib import Path
 
 import pytest
 
+from app.clip_sources import VIDEO, ReadOptions
+from app.recognition.errors import VideoError
 from app.recognition.recording.file_kinds import HEAD_BYTES, video_type
 from app.recognition.recording.video import probe
 from tests.recognition.damaged_clips import write_clip
@@ -46,3 +48,15 @@ def test_streams_of_camcorders_and_those_that_begin_in_mid_packet_are_known(
 )
 def test_what_only_resembles_one_is_not(head: bytes) -> None:
     assert video_type(head) is None
+
+
+def test_a_take_that_does_not_say_how_long_it_is_ends_while_it_is_read(tmp_path: Path) -> None:
+    whole = write_clip(tmp_path / "take.webm", codec="libvpx", frames=70, times=[*range(70)])
+    silent = tmp_path / "silent.webm"
+    # The element with the duration (Matroska, RFC 9559) becomes a void one.
+    silent.write_bytes(whole.read_bytes().replace(b"\x44\x89\x88", b"\xec\x89\x00", 1))
+    options = ReadOptions(one_take=True)
+    assert VIDEO.probe(silent, options).duration is None
+    with pytest.raises(VideoError, match="more than the limit of 60 s"):
+        list(VIDEO.open_frames(silent, options).frames)
+    assert len(list(VIDEO.open_frames(silent, ReadOptions()).frames)) == 70

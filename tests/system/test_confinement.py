@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
+import itertools
+import os
 import platform
+import re
 import subprocess
 import sys
 from pathlib import Path
 
 import pytest
 
+from app.api.workers.rights import environment_of_workers
 from app.system.confinement import confine, landlock_version
+from tests.conftest import ROOT
 
 linux = pytest.mark.skipif(sys.platform != "linux", reason="only Linux can confine a process")
 landlock = pytest.mark.skipif(
@@ -17,10 +22,21 @@ landlock = pytest.mark.skipif(
 )
 
 ATTEMPT = """
-import os, socket, subprocess, sys, threading
+import ctypes, os, platform, socket, subprocess, sys, threading
 from pathlib import Path
+from app.system import confinement
 from app.system.confinement import READ, UNPACK, WRITE, confine
 place = Path(sys.argv[1])
+library = ctypes.CDLL(None)
+def copied(descriptor, program):
+    os.write(descriptor, Path(program).read_bytes())
+    execveat, of_descriptor = {{"x86_64": 322, "aarch64": 281}}[platform.machine()], 0x1000
+    nothing = (ctypes.c_char_p * 2)(b"true", None)
+    return library.syscall(execveat, descriptor, b"", nothing, None, of_descriptor)
+if "without Landlock" in sys.argv[2:]:
+    confinement.landlock_version = lambda: 0
+if "without Linux" in sys.argv[2:]:
+    sys.platform = "darwin"
 confine([(place / "clip", READ), (place / "results", WRITE), (place / "scratch", UNPACK)])
 done = {attempt}
 print("DONE", done)
@@ -36,10 +52,11 @@ def place(tmp_path: Path) -> Path:
     return tmp_path
 
 
-def attempt(place: Path, expression: str) -> str:
+def attempt(place: Path, expression: str, *system: str) -> str:
     """Evaluate an expression in a confined process; return its value, or the error's name."""
-    command = [sys.executable, "-c", ATTEMPT.format(attempt=expression), str(place)]
-    ran = subprocess.run(command, capture_output=True, text=True, check=False)
+    command = [sys.executable, "-c", ATTEMPT.format(attempt=expression), str(place), *system]
+    variables = environment_of_workers({**os.environ, "OSG_TOKEN": "a token"})
+    ran = subprocess.run(command, capture_output=True, text=True, check=False, env=variables)
     last = (ran.stdout if ran.returncode == 0 else ran.stderr).strip().splitlines()[-1]
     return last.removeprefix("DONE ") if ran.returncode == 0 else last.partition(":")[0]
 
@@ -125,6 +142,19 @@ def test_no_process_is_started_that_would_outlive_the_job(place: Path, expressio
 
 
 @filtered
+@pytest.mark.parametrize(
+    "expression",
+    [
+        "os.execv('/bin/true', ['true'])",
+        # A program that lies in memory has no path that Landlock could deny.
+        "copied(os.memfd_create('program'), '/bin/true')",
+    ],
+)
+def test_no_program_takes_the_place_of_a_process(place: Path, expression: str) -> None:
+    assert attempt(place, expression) in ("PermissionError", "-1")
+
+
+@filtered
 def test_limits_of_other_processes_are_not_changed(place: Path) -> None:
     limits = '__import__("resource").prlimit({who}, 7, (64, 64))'
     assert attempt(place, limits.format(who="os.getppid()")) == "PermissionError"
@@ -168,6 +198,56 @@ def test_a_pair_of_sockets_between_threads_is_allowed(place: Path) -> None:
 @pytest.mark.skipif(landlock_version() < 6, reason="needs signals in Landlock, from Linux 6.12")
 def test_no_other_process_is_signalled(place: Path) -> None:
     assert attempt(place, "os.kill(os.getppid(), 0)") == "PermissionError"
+
+
+PAGE = ROOT / "docs" / "guides" / "administration.md"
+
+ATTEMPTS = {
+    "token, database address, keys in the environment": 'os.environ["OSG_TOKEN"]',
+    "memory and environment of the server": 'Path(f"/proc/{os.getppid()}/environ").read_bytes()',
+    "other files: database, `tokens.json`, others' clips": '(place / "secret").read_text()',
+    "writing outside the clip's folder": '(place / "beside").write_text("x")',
+    "network, other programs' sockets": "socket.socket()",
+    "starting programs": 'subprocess.run(["/bin/true"]) and os.execv("/bin/echo", ["e", "DONE"])',
+    "processes or memory that outlive the job": "library.shmctl(library.shmget(0, 64, 384), 0, 0)",
+    "rights, owner and times of files, limits of other processes": '(place / "clip").chmod(384)',
+    "signals to other processes": "os.kill(os.getppid(), 0)",
+}
+"""What a process tries for each row of the table of what it can reach."""
+
+SYSTEMS = ("", "without Landlock", "without Linux")
+
+
+def table_of_reach() -> dict[str, list[str]]:
+    """Return the cells of each row of the table, for each of `SYSTEMS`."""
+    _, table = PAGE.read_text(encoding="utf-8").split("What it can reach then:\n\n")
+    rows = [re.findall(r"[^|]+", line) for line in table.partition("\n\n")[0].splitlines()[2:]]
+    return {row[0].strip(): [cell.strip() for cell in row[1:]] for row in rows}
+
+
+def test_every_row_of_the_table_is_tried() -> None:
+    assert list(table_of_reach()) == list(ATTEMPTS)
+
+
+@landlock
+@filtered
+@pytest.mark.parametrize(
+    ("row", "system"), itertools.product(ATTEMPTS, SYSTEMS), ids=lambda each: each or "Linux"
+)
+def test_a_process_reaches_what_the_table_says(place: Path, row: str, system: str) -> None:
+    says = table_of_reach()[row][SYSTEMS.index(system)]
+    tried = attempt(place, ATTEMPTS[row], system)
+    reached = tried not in ("PermissionError", "KeyError", "-1")
+    match says:
+        case "yes" | "no":
+            assert reached is (says == "yes"), tried
+        case "no, from Linux 6.12":
+            assert reached is (landlock_version() < 6), tried
+        case "no, unless it runs as root":
+            # This process does not hide; the kernel shows it to its own user.
+            assert reached, tried
+        case _:
+            assert says == "as the system allows"
 
 
 @landlock

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import functools
-from collections.abc import Sequence
+from collections.abc import AsyncIterator, Sequence
+from contextlib import asynccontextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -14,14 +15,16 @@ from starlette.concurrency import run_in_threadpool
 from app.api.http.problems import ProblemError
 from app.api.http.schemas.clips import ClipAccepted
 from app.api.ingest.fields import UploadFields
+from app.api.ingest.multipart import require_space
 from app.api.ingest.quotas import quota_of
 from app.api.services.running_studio import Studio
+from app.api.workers.tasks import Join
 from app.api.workers.worker_messages import Failed, Probed
-from app.clip_sources import CHAPTERS, ReadOptions, sources_of_upload, supported_kinds
+from app.clip_sources import ReadOptions, sources_of_upload, supported_kinds
 from app.recognition.recording.file_kinds import HEAD_BYTES, find_file_kind
 from app.store import Clip, Upload
 
-UNSUPPORTED = "unsupported_media_type"
+UNSUPPORTED, STORAGE_UNAVAILABLE = "unsupported_media_type", "storage_unavailable"
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,7 +45,12 @@ class Inspected:
 
 
 def client_of(request: Request) -> str:
-    """Return the client's address, to which the queue limit applies."""
+    """Return to whom the queue limit applies: an invitation, or an address.
+
+    People who were invited may have the address of their host.
+    """
+    if (invitation := getattr(request.state, "invitation", None)) is not None:
+        return f"invitation {invitation.id}"
     return request.client.host[:64] if request.client else "local"
 
 
@@ -70,12 +78,47 @@ async def require_place_in_queue(request: Request, studio: Studio) -> int:
 
 
 def bytes_to_come(uploads: Sequence[Upload]) -> int:
-    """Return how many bytes these uploads have announced and not yet sent."""
-    return sum(upload.missing for upload in uploads)
+    """Return how many bytes these uploads will still take."""
+    return sum(upload.to_come for upload in uploads)
+
+
+@asynccontextmanager
+async def joined(
+    partial: Path, studio: Studio, *, name: str, fields: UploadFields
+) -> AsyncIterator[Path]:
+    """Yield a received file, or the video into which its chapters are joined.
+
+    That one lies beside them until the end of the context, in which its clip is stored.
+
+    Raises
+    ------
+    ProblemError
+        422 when they cannot be joined, 503 or 507 when the disk is too full for it.
+
+    """
+    if not (chapters := fields.options.chapters):
+        yield partial
+        return
+    # One at a time: the next one looks at what this one leaves of the disk.
+    async with studio.joining:
+        uploads = await run_in_threadpool(studio.uploads.active)
+        others = [each for each in uploads if each.path != partial]
+        size, reserved = partial.stat().st_size, bytes_to_come(others)
+        require_space(studio.clips.folder, size, studio.settings, reserved=reserved)
+        with studio.clips.receiving() as target:
+            ended = await studio.workers.run(Join(file=partial, chapters=chapters, target=target))
+            if isinstance(ended, Failed):
+                raise _refusal(ended, name)
+            yield target
 
 
 async def inspect(
-    partial: Path, studio: Studio, *, name: str, size: int, fields: UploadFields | None = None
+    partial: Path,
+    studio: Studio,
+    *,
+    name: str,
+    fields: UploadFields | None = None,
+    one_take: bool = False,
 ) -> Inspected:
     """Probe a received file.
 
@@ -85,11 +128,13 @@ async def inspect(
         The file.
     studio
         Starts the process that probes it.
-    name, size
-        The name to show, and the file's bytes.
+    name
+        The name to show.
     fields
         Values from its sender. Without a topic, the only one of a dive recording is taken, or the
         topic is chosen later.
+    one_take
+        See `ReadOptions.one_take`.
 
     Raises
     ------
@@ -98,17 +143,16 @@ async def inspect(
         topic, or needs more `fields`.
 
     """
-    if size == 0:
+    if (size := partial.stat().st_size) == 0:
         raise ProblemError(422, "video_unreadable", f"{name} is empty; record or export it again")
     given = fields or UploadFields()
+    wanted = given.options.model_copy(update={"one_take": one_take})
     head = await run_in_threadpool(_head, partial)
     candidates = sources_of_upload(head, name)
     for source in candidates:
         if given.topic is not None and not source.has_topics:
             continue
-        if (given.chapters is None) == (source is CHAPTERS):
-            continue
-        options = source.upload_options(head, name, given.options)
+        options = source.upload_options(head, name, wanted)
         probed = await studio.workers.probe(source, partial, options)
         if isinstance(probed, Probed):
             clip = Clip(
@@ -196,7 +240,7 @@ def _facts(name: str, options: ReadOptions, probed: Probed) -> dict[str, Any]:
 
 
 def _refusal(probed: Failed, name: str) -> ProblemError:
-    status = 415 if probed.code == UNSUPPORTED else 422
+    status = {UNSUPPORTED: 415, STORAGE_UNAVAILABLE: 503}.get(probed.code, 422)
     return ProblemError(status, probed.code, f"{name}: {probed.detail}")
 
 

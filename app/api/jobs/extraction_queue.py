@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import logging
-from collections import OrderedDict, deque
+from collections import Counter, OrderedDict, deque
 from collections.abc import Callable
 from contextlib import suppress
 from functools import partial
@@ -22,6 +22,7 @@ from app.api.workers.worker_messages import Failed, Finished, Progress
 from app.api.workers.worker_processes import Workers
 from app.clip_sources import ReadOptions
 from app.settings import Settings
+from app.store.atomic_files import PARTIAL_SUFFIX
 from app.store.clips import FILMSTRIP, POSTER, RECORDING, SO_FAR
 
 RENEW_SECONDS = 10.0
@@ -85,7 +86,7 @@ class ExtractionQueue:
         self._workers = workers
         self._broadcast = broadcast
         self._settings = settings
-        self._waiting = FairQueue()
+        self._waiting = FairQueue(settings.workers)
         self._running: set[str] = set()
         self._loops: list[asyncio.Task[None]] = []
         self._look = asyncio.Event()
@@ -94,7 +95,8 @@ class ExtractionQueue:
         """Requeue the jobs that an earlier run left open, and start the workers."""
         for job in await run_in_threadpool(self._jobs.resume):
             await self._waiting.put(job.client, job.id)
-        self._loops = [asyncio.create_task(self._work()) for _ in range(self._settings.workers)]
+        places = self._settings.workers + 1
+        self._loops = [asyncio.create_task(self._work()) for _ in range(places)]
         self._loops.append(asyncio.create_task(self._keep_up()))
 
     def look(self) -> None:
@@ -128,7 +130,7 @@ class ExtractionQueue:
 
     async def _work(self) -> None:
         while True:
-            job_id = await self._waiting.get()
+            client, job_id = await self._waiting.get()
             try:
                 if job := await persist(self._jobs.start, job_id):
                     await self._run(job)
@@ -136,6 +138,8 @@ class ExtractionQueue:
                 # The failure of one job, such as a full disk, must not end the loop for all others.
                 logger.exception("job %s could not be run", job_id)
                 await self._give_up(job_id)
+            finally:
+                self._waiting.release(client)
 
     async def _keep_up(self) -> None:
         """Renew the leases of this server's jobs, and take over those that other servers left."""
@@ -205,7 +209,10 @@ class ExtractionQueue:
                     failed = partial(self._jobs.finish, code=code, error=detail)
                     await persist(failed, job.id, store.JobStatus.FAILED)
         finally:
-            so_far.unlink(missing_ok=True)
+            # A process that died leaves what it was writing.
+            written = [each.with_suffix(PARTIAL_SUFFIX) for each in task.files.outputs]
+            for left in (so_far, *written, *so_far.parent.glob(f".*{PARTIAL_SUFFIX}")):
+                left.unlink(missing_ok=True)
         return ended
 
     async def _give_up(self, job_id: str) -> None:
@@ -223,10 +230,19 @@ class ExtractionQueue:
 
 
 class FairQueue:
-    """Ids of waiting jobs by client; a client with a hundred jobs does not delay the others."""
+    """Ids of waiting jobs by client; neither a hundred jobs nor a long one delay other clients.
 
-    def __init__(self) -> None:
+    Parameters
+    ----------
+    most
+        Jobs at the same time; one more if it is of a client of whom none runs.
+
+    """
+
+    def __init__(self, most: int) -> None:
+        self._most = most
         self._waiting: OrderedDict[str, deque[str]] = OrderedDict()
+        self._running: Counter[str] = Counter()
         self._known: set[str] = set()
         self._changed = asyncio.Condition()
 
@@ -237,20 +253,34 @@ class FairQueue:
                 return
             self._known.add(job_id)
             self._waiting.setdefault(client, deque()).append(job_id)
-            self._changed.notify()
+            self._changed.notify_all()
 
-    async def get(self) -> str:
-        """Take the next job, waiting for one."""
+    async def get(self) -> tuple[str, str]:
+        """Take the next job, waiting for one; return its client too, see `release`."""
         async with self._changed:
-            await self._changed.wait_for(lambda: self._waiting)
-            client, jobs = next(iter(self._waiting.items()))
+            await self._changed.wait_for(self._next)
+            client = self._next()
+            assert client is not None
+            jobs = self._waiting[client]
+            self._running[client] += 1
             job_id = jobs.popleft()
             self._known.discard(job_id)
             if jobs:
                 self._waiting.move_to_end(client)
             else:
                 del self._waiting[client]
-            return job_id
+            return client, job_id
+
+    def release(self, client: str) -> None:
+        """Count a job of a client as ended; whoever took it looks for the next one."""
+        self._running[client] -= 1
+        self._running += Counter()  # Keeps no client of whom none runs.
+
+    def _next(self) -> str | None:
+        """Return the client whose turn it is; None while its job must wait."""
+        full = self._running.total() >= self._most
+        free = (each for each in self._waiting if not (full and each in self._running))
+        return next(free, None)
 
 
 async def persist(

@@ -149,7 +149,7 @@ async def _inspect_video(received: Path, studio: Studio, upload: Upload) -> Insp
     detail = f"{upload.name} is no video; record one, or choose another file"
     no_video = ProblemError(415, UNSUPPORTED, detail)
     try:
-        made = await inspect(received, studio, name=upload.name, size=upload.size)
+        made = await inspect(received, studio, name=upload.name, one_take=True)
     except ProblemError as error:
         raise no_video if error.code == UNSUPPORTED else error from error
     if made.clip.source != VIDEO:

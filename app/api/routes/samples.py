@@ -43,7 +43,7 @@ async def import_sample(
     await require_quota(quota, studio, size)
     with studio.clips.receiving() as partial:
         await run_in_threadpool(shutil.copyfile, sample, partial)
-        made = await inspect(partial, studio, name=display_name(sample.name), size=size)
+        made = await inspect(partial, studio, name=display_name(sample.name))
         return await store(made, partial, studio, request)
 
 

@@ -5,7 +5,8 @@ from __future__ import annotations
 from functools import lru_cache
 
 from app.api.http.schemas.clips import TakeView
-from app.api.services.running_studio import RecordingFile, Studio, load_recording
+from app.api.services.recording_cache import RecordingFile, load_recording
+from app.api.services.running_studio import Studio
 from app.recognition import Language, OsgError, Recognizer
 from app.recognition.recording.segmentation import takes_in
 from app.recognition.spotting import Spotter

@@ -6,12 +6,8 @@ from collections.abc import Sequence
 from functools import lru_cache
 
 from app.api.http.schemas.gestures import NewDemonstration
-from app.api.services.running_studio import (
-    RecordingFile,
-    Studio,
-    load_recording,
-    whole_recording,
-)
+from app.api.services.recording_cache import RecordingFile, load_recording, whole_recording
+from app.api.services.running_studio import Studio
 from app.recognition import Language, OsgError
 from app.recognition.explanation.demonstration_faults import (
     ClipOutline,

@@ -22,7 +22,7 @@ from app.api.jobs.job import compute_in_place
 from app.api.services import gesture_edits
 from app.api.services.demonstration_faults import faults_of_source
 from app.api.services.demonstration_sources import find_sources, keep_source
-from app.api.services.identities import Identities
+from app.api.services.identities import Identities, Identity
 from app.api.services.language_responses import save_revision
 from app.api.services.running_studio import Studio
 from app.recognition import Gesture, Language, OsgError, Recognition, Recognizer
@@ -102,9 +102,9 @@ async def settle_takes(studio: Studio, identities: Identities) -> None:
             if takes or changes != seen:
                 takes = await run_in_threadpool(studio.invitations.waiting)
                 for take in takes:
-                    await compute_in_place(
-                        studio.edits, partial(_look_at, studio, identities, take)
-                    )
+                    look = partial(_look_at, studio, identities, take)
+                    if (job := await compute_in_place(studio.edits, look)) is not None:
+                        await studio.extractions.cancel(job)
                 seen = changes
         except store.StoreError as error:
             logger.warning("invited takes wait for the store: %s", error)
@@ -114,8 +114,14 @@ async def settle_takes(studio: Studio, identities: Identities) -> None:
         await asyncio.sleep(LOOK_SECONDS)
 
 
-def _look_at(studio: Studio, identities: Identities, take: store.InvitedTake) -> None:
-    """Judge a take if its job has ended, and keep the outcome."""
+def _look_at(studio: Studio, identities: Identities, take: store.InvitedTake) -> store.Job | None:
+    """Judge a take if its job has ended, and keep the outcome.
+
+    Returns
+    -------
+    The job that is to be ended, because nothing is added by its invitation any more; else None.
+
+    """
     found = None
     try:
         found = studio.clips.get(take.clip_id)
@@ -123,8 +129,10 @@ def _look_at(studio: Studio, identities: Identities, take: store.InvitedTake) ->
     except store.NotFound:
         # Its clip is being stored, was deleted, or never came because the server ended.
         ready = take.created < now() - LOST
+    if not ready and found is not None and _owner_of(studio, identities, take) is None:
+        return found.job
     if not ready or not studio.invitations.claim(take.id):
-        return
+        return None
     try:
         _judge(studio, identities, take, found)
     except Returned as returned:
@@ -132,6 +140,15 @@ def _look_at(studio: Studio, identities: Identities, take: store.InvitedTake) ->
     except Doubted as doubted:
         studio.invitations.ask(take.id, doubted.read_as, str(doubted))
         studio.broadcast.publish("clips", id=take.clip_id)
+    return None
+
+
+def _owner_of(studio: Studio, identities: Identities, take: store.InvitedTake) -> Identity | None:
+    """Return in whose name a take is added; None if its invitation was withdrawn, or they left."""
+    invitation = studio.invitations.get(take.invitation_id)
+    if invitation.closed == "withdrawn":
+        return None
+    return identities.of_inviter(invitation.owner, invitation.created)
 
 
 def _settle(
@@ -212,9 +229,7 @@ def _judge(
         When it has to be asked about.
 
     """
-    invitation = studio.invitations.get(take.invitation_id)
-    owner = identities.of_inviter(invitation.owner, invitation.created)
-    if owner is None or invitation.closed == "withdrawn":
+    if (owner := _owner_of(studio, identities, take)) is None:
         raise Returned("This invitation was withdrawn.")
     if found is None:
         raise Returned("The clip did not arrive. Show it again.")
@@ -224,13 +239,14 @@ def _judge(
         )
     quota = store.Quota(owner.name, owner.quota_bytes, owner.quota_clips)
     add_take(studio, take, quota, sure=False)
+    language_id = studio.invitations.get(take.invitation_id).language_id
     studio.audit.add(
         store.AuditEntry(
             name=owner.name,
             role=owner.role.value,
             address="invitation",
             method="POST",
-            path=f"/api/v1/languages/{invitation.language_id}/demonstrations",
+            path=f"/api/v1/languages/{language_id}/demonstrations",
             status=201,
             request_id=take.id,
         )

@@ -8,11 +8,9 @@ import time
 from collections import OrderedDict
 from collections.abc import AsyncIterator, Callable, Coroutine, Iterator
 from contextlib import ExitStack, asynccontextmanager, contextmanager, suppress
-from dataclasses import dataclass
 from datetime import datetime, timedelta
-from functools import lru_cache, partial, wraps
+from functools import partial, wraps
 from inspect import Parameter, signature
-from pathlib import Path
 from threading import Event, Lock
 from typing import Annotated, Any, Generic, TypeVar
 
@@ -30,6 +28,7 @@ from app.api.jobs.job import JobRunner, compute_in_place
 from app.api.observation.heap import keep_trimmed
 from app.api.observation.metrics import Metrics
 from app.api.services.kept_exports import KeptExports
+from app.api.services.recording_cache import RecordingFile, load_recording, whole_recording
 from app.api.services.sample_library import Samples
 from app.api.workers.worker_messages import Progress
 from app.api.workers.worker_processes import Workers
@@ -48,9 +47,6 @@ MOST_CACHED = 16
 MOST_CACHED_CHARACTERS = 32_000_000
 """Characters of their documents together: a cached language takes five times its document, and one
 of a thousand gestures has 27 million."""
-
-CACHED_RECORDINGS = 4
-"""Number of recordings cached: the clip on screen and those it is compared with."""
 
 MOST_COMPUTATIONS = 2
 """Most explanations, previews, pages and the like computed at the same time: one takes seconds with
@@ -75,26 +71,6 @@ logger = logging.getLogger(__name__)
 
 Made = TypeVar("Made")
 Stored = TypeVar("Stored")
-
-
-@dataclass(frozen=True)
-class RecordingFile:
-    """File of a recording, as a key of caches.
-
-    Attributes
-    ----------
-    path
-        The file.
-    written
-        Nanoseconds of its last change: a clip may be read again.
-    whole
-        Whether it has all frames; else the others are being read.
-
-    """
-
-    path: Path
-    written: int
-    whole: bool = True
 
 
 class Studio:
@@ -132,6 +108,8 @@ class Studio:
         Limits those that never take seconds, see `computed_briefly`.
     edits
         Limits the edits of languages at the same time, see `edited`.
+    joining
+        Lets one upload of chapters be joined at a time.
     exports
         Written files that wait to be fetched.
 
@@ -174,6 +152,7 @@ class Studio:
         self.computations = asyncio.Semaphore(MOST_COMPUTATIONS)
         self.brief_computations = asyncio.Semaphore(MOST_COMPUTATIONS)
         self.edits = asyncio.Semaphore(MOST_EDITS)
+        self.joining = asyncio.Semaphore()
         self.exports = KeptExports()
 
     def _hear(self, event: BroadcastEvent) -> None:
@@ -259,17 +238,6 @@ class Studio:
 
         """
         return _recognizers.get(state.revision.document, profile)
-
-
-def whole_recording(path: Path) -> RecordingFile:
-    """Return the file of a recording with all frames, which `load_recording` finds missing."""
-    return RecordingFile(path, path.stat().st_mtime_ns if path.is_file() else 0)
-
-
-@lru_cache(CACHED_RECORDINGS)
-def load_recording(file: RecordingFile) -> Recording:
-    """Load a recording, or return it from the cache."""
-    return Recording.load(file.path)
 
 
 class DocumentCache(Generic[Made]):

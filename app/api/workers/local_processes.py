@@ -22,6 +22,7 @@ from asyncio.subprocess import PIPE
 from collections.abc import AsyncIterator, Awaitable, Callable
 from contextlib import asynccontextmanager
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Final
 
 from app.api.workers.executor import COMMAND, PACKAGE_PARENT, Lines, Order
@@ -31,8 +32,24 @@ END_SECONDS: Final = 5.0
 """Longest wait in seconds for the end of the fork server, which takes some milliseconds."""
 
 
+LOOK_SECONDS: Final = 0.5
+"""Seconds between two looks at the memory of all processes; each has a limit of its own."""
+
+
 class LocalProcesses:
-    """Runs worker processes on this machine."""
+    """Runs worker processes on this machine.
+
+    Parameters
+    ----------
+    most_bytes
+        Most memory of all processes together, beyond which the largest is ended; 0 for no limit.
+
+    """
+
+    def __init__(self, most_bytes: int = 0) -> None:
+        self._most = most_bytes
+        self._running: list[_Worker] = []
+        self._watching: asyncio.Task[None] | None = None
 
     @asynccontextmanager
     async def start(self, order: Order) -> AsyncIterator[Lines]:
@@ -40,14 +57,37 @@ class LocalProcesses:
         line = await asyncio.to_thread(line_of, order)
         # None can be forked while the fork server dies.
         worker = (await _fork_worker() if can_fork() else None) or await _start_worker()
+        self._running.append(worker)
+        if self._most and (self._watching is None or self._watching.done()):
+            self._watching = asyncio.create_task(self._watch())
         try:
             worker.orders.write(line)
             yield worker
         finally:
+            self._running.remove(worker)
             await worker.end()
 
     async def close(self) -> None:
         """Do nothing: every process ends with its context."""
+
+    async def _watch(self) -> None:
+        """End the largest process while all together hold too much, as long as any runs."""
+        while self._running:
+            held = {worker.process: memory_of(worker.process) for worker in self._running}
+            if sum(held.values()) > self._most:
+                largest = max(self._running, key=lambda worker: held[worker.process])
+                with contextlib.suppress(ProcessLookupError):
+                    largest.kill()
+            await asyncio.sleep(LOOK_SECONDS)
+
+
+def memory_of(process: int) -> int:
+    """Return the bytes of memory that a process has in use; 0 where the system does not tell."""
+    try:
+        resident = Path(f"/proc/{process}/statm").read_text().split()[1]
+    except (OSError, IndexError):
+        return 0
+    return int(resident) * os.sysconf("SC_PAGE_SIZE")
 
 
 @functools.cache
@@ -64,8 +104,10 @@ def can_fork() -> bool:
 class _Worker:
     """A running worker process; `end` kills it, and waits until it has ended."""
 
+    process: int
     lines: asyncio.StreamReader
     orders: asyncio.StreamWriter
+    kill: Callable[[], None]
     end: Callable[[], Awaitable[None]]
 
     async def readline(self, silence_seconds: float | None = None) -> bytes:
@@ -95,7 +137,7 @@ async def _start_worker() -> _Worker:
 
     assert process.stdin is not None
     assert process.stdout is not None
-    return _Worker(process.stdout, process.stdin, end)
+    return _Worker(process.pid, process.stdout, process.stdin, process.kill, end)
 
 
 async def _fork_worker() -> _Worker | None:
@@ -105,7 +147,8 @@ async def _fork_worker() -> _Worker | None:
     try:
         # The process waits for its order after sending its id, so the id is still its own.
         said = await lines.readline()
-        process = os.pidfd_open(int(said)) if said else None
+        number = int(said or 0)
+        process = os.pidfd_open(number) if said else None
     except (ConnectionResetError, ProcessLookupError):
         return None
     finally:
@@ -113,10 +156,12 @@ async def _fork_worker() -> _Worker | None:
             connection.close()
     if process is None:
         return None
-    return _Worker(lines, connection, functools.partial(_kill, process, connection))
+    kill = functools.partial(signal.pidfd_send_signal, process, signal.SIGKILL)
+    end = functools.partial(_end, process, connection)
+    return _Worker(number, lines, connection, kill, end)
 
 
-async def _kill(process: int, connection: asyncio.StreamWriter) -> None:
+async def _end(process: int, connection: asyncio.StreamWriter) -> None:
     """Kill a process by its file descriptor, which is never reused for another one."""
     loop = asyncio.get_running_loop()
     ended = asyncio.Event()

@@ -7,11 +7,13 @@ from __future__ import annotations
 
 import base64
 import contextlib
+import errno
 import time
 from collections.abc import Callable
 from contextlib import closing
 from dataclasses import asdict
 from functools import cache, lru_cache
+from itertools import accumulate, pairwise
 from pathlib import Path
 from typing import Annotated, ClassVar, Literal
 
@@ -47,6 +49,7 @@ from app.recognition.language.osg_reference import from_reference, is_reference
 from app.recognition.language.requirements import require_seen_landmarks
 from app.recognition.language.trigger_entry import TriggerEntry, entry_to_trigger
 from app.recognition.poses.frame import Body, FrameLandmarks
+from app.recognition.recording.chapters import join_chapters
 from app.recognition.recording.clip_range import find_clip_range
 from app.recognition.recording.video import VideoFrame, read_frames
 from app.recognition.recording.video import probe as probe_video
@@ -82,8 +85,9 @@ class _ClipTask(Task):
 
     def refuse(self, error: Exception) -> Failed:
         match error:
-            case MemoryError():
-                detail = "the clip needs more memory than a job may use"
+            case MemoryError() | OSError(errno=errno.EFBIG):
+                what = "memory" if isinstance(error, MemoryError) else "room on the disk"
+                detail = f"the clip needs more {what} than a job may use"
                 return Failed(code="decoder", detail=detail)
             case UnsupportedFile():
                 return Failed(code="unsupported_media_type", detail=str(error))
@@ -110,6 +114,25 @@ class Probe(_ClipTask):
         picture = first_picture(self.file) if self.source == VIDEO.name else None
         encoded = None if picture is None else base64.b64encode(picture)
         report(Probed.model_validate({**facts, "picture": encoded}))
+
+
+class Join(_ClipTask):
+    """Joins a camera's chapters, which follow each other in the received file, to one video."""
+
+    queue, here = "short", True
+
+    kind: Literal["join"] = "join"
+    source: str = VIDEO.name
+    chapters: tuple[int, ...]
+    target: Writes
+
+    def run(self, report: Report) -> None:
+        """Write the video; see `join_chapters`."""
+        if sum(self.chapters) != self.file.stat().st_size:
+            raise VideoError("the clip is not as long as the chapters that it is said to hold")
+        ranges = pairwise([0, *accumulate(self.chapters)])
+        join_chapters([(self.file, each) for each in ranges], self.target)
+        report(Finished())
 
 
 class Record(_ClipTask):
@@ -379,7 +402,7 @@ class TestRun(Task):
         report(Finished())
 
 
-AnyTask = Probe | Record | FindLandmarks | Export | Import | Check | TestRun
+AnyTask = Probe | Join | Record | FindLandmarks | Export | Import | Check | TestRun
 """Every kind of task, told apart by `kind`."""
 
 TASK: TypeAdapter[AnyTask] = TypeAdapter(Annotated[AnyTask, Field(discriminator="kind")])

@@ -71,7 +71,7 @@ class Workers:
         self._settings = settings
         self._metrics = metrics or Metrics()
         self._hold = hold
-        self._here = LocalProcesses()
+        self._here = LocalProcesses(settings.limits.worker_memory_bytes * settings.workers)
         self._executor = _executor_of(settings, self._here)
         self._turns = {queue: asyncio.Semaphore(most) for queue, most in MOST_AT_ONCE.items()}
 

@@ -179,12 +179,14 @@ def join_chapters(chapters: Sequence[tuple[Path, ByteRange | None]], target: Pat
     VideoError
         When a chapter cannot be read or is coded otherwise than the first one, or MP4 does not hold
         its codec.
+    OSError
+        When the file cannot be written.
 
     """
     try:
         with av.open(str(target), "w", format="mp4") as joined:
             _join(chapters, joined)
-    except VideoError:
+    except (VideoError, OSError):  # The disk may be full.
         raise
     except (ArithmeticError, ValueError, av.error.FFmpegError) as error:
         raise VideoError(f"the chapters cannot be joined ({error}); convert them to MP4") from error

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 import zipfile
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -136,18 +137,10 @@ class Recording:
 
         """
         source = Path(path)
-        try:
-            _require_size(source)
-            with np.load(source, allow_pickle=False) as archive:
-                # Unpacks what is asked for, so that an array of an unknown name stays packed.
-                return cls._from_arrays(archive)
-        except PoseError:
-            raise
-        except (OSError, ValueError, KeyError, TypeError, EOFError, zipfile.BadZipFile) as error:
-            raise PoseError(
-                f"{source.name} is not a readable recording ({error}); extract the clip's poses "
-                "again"
-            ) from error
+        unpacked_bytes(source)
+        with _readable(source), np.load(source, allow_pickle=False) as archive:
+            # Unpacks what is asked for, so that an array of an unknown name stays packed.
+            return cls._from_arrays(archive)
 
     @classmethod
     def _from_arrays(cls, arrays: Mapping[str, Any]) -> Recording:
@@ -185,17 +178,30 @@ class Recording:
         )
 
 
-def _require_size(file: Path) -> None:
-    """Refuse a file whose arrays would take too much memory, by their headers alone.
+@contextmanager
+def _readable(file: Path) -> Iterator[None]:
+    """Raise a PoseError that names the file for all that is wrong with it."""
+    try:
+        yield
+    except PoseError:
+        raise
+    except (OSError, ValueError, KeyError, TypeError, EOFError, zipfile.BadZipFile) as error:
+        raise PoseError(
+            f"{file.name} is not a readable recording ({error}); extract the clip's poses again"
+        ) from error
+
+
+def unpacked_bytes(file: Path) -> int:
+    """Return how much memory the arrays of a recording's file take, by their headers alone.
 
     Raises
     ------
-    ValueError
-        When they would, or when a header is not as `Recording.save` writes it.
+    PoseError
+        When it is more than `MOST_BYTES`, or a header is not as `Recording.save` writes it.
 
     """
     size = 0
-    with zipfile.ZipFile(file) as archive:
+    with _readable(file), zipfile.ZipFile(file) as archive:
         if len(set(archive.namelist())) < len(archive.namelist()):
             raise ValueError("it holds two arrays of one name")
         for info in archive.infolist():
@@ -208,6 +214,7 @@ def _require_size(file: Path) -> None:
             size += math.prod(shape) * dtype.itemsize
             if size > MOST_BYTES:
                 raise ValueError(f"it would take more than {MOST_BYTES >> 20} MB of memory")
+    return size
 
 
 def _wrists(poses: PoseSequence) -> FloatArray:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Final
 
 from app.recognition.errors import VideoError
 
@@ -51,3 +52,8 @@ class VideoLimits:
                 f"the clip lasts at least {seconds:.0f} s, more than the limit of "
                 f"{self.seconds:g} s; cut out the part with the gestures"
             )
+
+
+TAKE: Final = VideoLimits(pixels=4096 * 2160, frames=3600, seconds=60.0)
+"""Limits of one gesture between its two salutes, which somebody who was invited sends: it lasts ten
+seconds, and no phone records larger pictures by itself."""

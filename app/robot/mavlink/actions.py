@@ -163,6 +163,8 @@ class VehicleFacts:
 class CommandStep:
     """A command with at most seven parameters, which the vehicle acknowledges.
 
+    That of a mode is repeated until the vehicle acknowledges and shows it.
+
     Attributes
     ----------
     command
@@ -171,6 +173,8 @@ class CommandStep:
         Its parameters; those left out are 0.
     system, component
         Who should obey.
+    mode
+        Number of the mode that it sets; None: it sets none.
 
     """
 
@@ -178,9 +182,12 @@ class CommandStep:
     parameters: tuple[float, ...]
     system: int
     component: int
+    mode: int | None = None
 
-    mode = None
-    moves = False
+    @property
+    def moves(self) -> bool:
+        """Whether it moves the vehicle, as every mode may."""
+        return self.mode is not None
 
     def build(self, repetition: int) -> Message:
         """Build the message."""
@@ -190,30 +197,11 @@ class CommandStep:
         )
 
     def is_done(self, reported: Reported) -> bool:
-        """Return whether the vehicle accepted it."""
-        return reported.acknowledged.get((self.component, self.command), False)
-
-
-@dataclass(frozen=True)
-class ModeStep:
-    """A change of the mode, repeated until the vehicle acknowledges and shows it."""
-
-    mode: int
-    system: int
-    component: int
-
-    command = mavlink.MAV_CMD_DO_SET_MODE
-    moves = True
-
-    def build(self, repetition: int) -> Message:
-        """Build the message."""
-        chosen = (mavlink.MAV_MODE_FLAG_CUSTOM_MODE_ENABLED, self.mode)
-        return CommandStep(self.command, chosen, self.system, self.component).build(repetition)
-
-    def is_done(self, reported: Reported) -> bool:
-        """Return whether the vehicle acknowledged it and is in the mode."""
-        is_acknowledged = (self.component, self.command) in reported.acknowledged
-        return is_acknowledged and reported.mode == self.mode
+        """Return whether the vehicle accepted it, or acknowledged it and is in the mode."""
+        is_accepted = reported.acknowledged.get((self.component, self.command))
+        if self.mode is None:
+            return is_accepted or False
+        return is_accepted is not None and reported.mode == self.mode
 
 
 @dataclass(frozen=True)
@@ -251,7 +239,7 @@ class DepthStep:
         return abs(target + self.metres) <= TARGET_TOLERANCE
 
 
-Step = CommandStep | ModeStep | DepthStep
+Step = CommandStep | DepthStep
 """A request: the `command` whose acknowledgement answers it, the `mode` that it sets, whether it
 `moves` the vehicle."""
 
@@ -283,7 +271,7 @@ def describe_sent(action: Action, vehicle: Vehicle) -> str:
 def describe_step(step: Step) -> str:
     """Describe the message of a step, such as ``DO_SET_MODE SURFACE``."""
     match step:
-        case ModeStep(mode=mode):
+        case CommandStep(mode=int(mode)):
             return f"DO_SET_MODE {name_entry('SUB_MODE', mode)}"
         case DepthStep(metres=metres):
             return f"SET_POSITION_TARGET_GLOBAL_INT depth {metres:g} m"
@@ -309,7 +297,9 @@ def build_steps(action: Action, vehicle: Vehicle, picture: int) -> tuple[Step, .
     address = (vehicle.system, vehicle.component)
     match action:
         case Hold() | Surface() | Mode():
-            return (ModeStep(getattr(mavlink, f"SUB_MODE_{action.mode}"), *address),)
+            mode = getattr(mavlink, f"SUB_MODE_{action.mode}")
+            chosen = (mavlink.MAV_MODE_FLAG_CUSTOM_MODE_ENABLED, mode)
+            return (CommandStep(mavlink.MAV_CMD_DO_SET_MODE, chosen, *address, mode),)
         case Lights(percent=percent):
             pulse = round(LEAST_PWM + (MOST_PWM - LEAST_PWM) * percent / 100)
             command = mavlink.MAV_CMD_DO_SET_SERVO

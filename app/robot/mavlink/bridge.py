@@ -34,7 +34,7 @@ from app.robot.mavlink.actions import (
 )
 from app.robot.mavlink.links import Packet, VehicleLink
 from app.robot.mavlink.memory import Memory
-from app.robot.mavlink.orders import Order, OrderDesk, Outcome, is_from_vehicle
+from app.robot.mavlink.orders import Order, OrderDesk, Outcome, OutcomeKind, is_from_vehicle
 from app.robot.mavlink.patterns import AnswerDesk
 from app.robot.mavlink.peer import Sender, VehiclePeer
 from app.robot.mavlink.table import Action, VehicleTable, describe_actions
@@ -58,17 +58,18 @@ machine tells in them what was not done."""
 
 SIGNATURE_REJECTED: Final = "the vehicle rejects our signature: check the clock"
 
-SEVERITIES: Final = {
-    **dict.fromkeys(("done", "replaced", "cancelled", "late"), mavlink.MAV_SEVERITY_NOTICE),
-    "waits": mavlink.MAV_SEVERITY_CRITICAL,
+TOLD: Final[dict[OutcomeKind, tuple[str, int, Answer | None]]] = {
+    "done": ("done", mavlink.MAV_SEVERITY_NOTICE, Answer.done),
+    "late": ("done after all", mavlink.MAV_SEVERITY_NOTICE, Answer.done),
+    "cancelled": ("cancelled", mavlink.MAV_SEVERITY_NOTICE, Answer.done),
+    "replaced": ("replaced", mavlink.MAV_SEVERITY_NOTICE, None),
+    "refused": ("{}", mavlink.MAV_SEVERITY_WARNING, Answer.refused),
+    "unanswered": ("NOT DONE, no answer", mavlink.MAV_SEVERITY_WARNING, Answer.refused),
+    "stopped": ("NOT DONE, {}", mavlink.MAV_SEVERITY_WARNING, Answer.refused),
+    "waits": ("{}", mavlink.MAV_SEVERITY_CRITICAL, None),
 }
-"""Severity of the text about an order; that of the others is a warning."""
-
-ANSWERS: Final = {
-    **dict.fromkeys(("done", "late", "cancelled"), Answer.done),
-    **dict.fromkeys(("refused", "unanswered", "stopped"), Answer.refused),
-}
-"""Answers to the diver about an order that ended; the others go on, or are told by the next one."""
+"""What is told of an order, with its reason; how severe it is; the answer to the diver, None where
+it goes on, or is told by the next one."""
 
 
 class MavlinkBridge:
@@ -435,16 +436,11 @@ class MavlinkBridge:
             return
         if outcome.kind == "unanswered" and (obstacle := self._find_obstacle(outcome.order)):
             outcome = replace(outcome, kind="stopped", answer=obstacle)
-        told = {
-            "unanswered": "NOT DONE, no answer",
-            "refused": outcome.answer,
-            "stopped": f"NOT DONE, {outcome.answer}",
-            "waits": outcome.answer,
-            "late": "done after all",
-        }.get(outcome.kind, outcome.kind)
-        text = f"{told}: {outcome.order.words}{f'; {outcome.sent}' if outcome.sent else ''}"
-        self._say(text, SEVERITIES.get(outcome.kind, mavlink.MAV_SEVERITY_WARNING))
-        self.answer(ANSWERS.get(outcome.kind), text, emergency=outcome.order.emergency)
+        told, severity, answer = TOLD[outcome.kind]
+        sent = f"; {outcome.sent}" if outcome.sent else ""
+        text = f"{told.format(outcome.answer)}: {outcome.order.words}{sent}"
+        self._say(text, severity)
+        self.answer(answer, text, emergency=outcome.order.emergency)
         # A vehicle drops without a word what is signed wrongly, or with a time before the last.
         is_deaf = not (self._silent or self._is_answered or self._peer.sender is None)
         if outcome.kind == "unanswered" and is_deaf and self._table.vehicle.key_file:

@@ -175,11 +175,6 @@ class OrderDesk:
         self._begin(0, now)
         return replaced
 
-    def _begin_again(self, now: float) -> None:
-        """Begin the active order again: what was heard until now proves nothing."""
-        if self.order is not None:
-            self._begin(0, now)
-
     def cancel(self) -> Outcome | None:
         """Drop the active order unless it is an emergency; return what became of it."""
         if self.order is None:
@@ -271,7 +266,7 @@ class OrderDesk:
         self._clock.hear(now)
         if proves != self._proves:
             self._proves = proves
-            self._begin_again(now)
+            self._begin(0, now)
         if not proves:
             return None
         self._note_state(message, now)
@@ -348,7 +343,7 @@ class OrderDesk:
             self.reboots += 1
             self._reported = Reported()
             self._mode = None
-            self._begin_again(now)
+            self._begin(0, now)
         self._uptime = uptime
 
     def _advance(self, now: float) -> Outcome | None:
@@ -361,8 +356,9 @@ class OrderDesk:
         return self._end("done")
 
     def _begin(self, position: int, now: float) -> None:
-        """Begin a step; earlier reports of the vehicle do not prove it."""
-        assert self.order is not None
+        """Begin a step of the active order, if any; earlier reports do not prove it."""
+        if self.order is None:
+            return
         self._position, self._sent, self._next = position, 0, now
         self._began = self._clock.seconds
         self._reported = Reported()

@@ -11,6 +11,7 @@ import json
 import sys
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
+from dataclasses import fields
 from pathlib import Path
 from typing import Annotated, Any, ClassVar, Final, Literal
 
@@ -302,16 +303,9 @@ class VehicleTable(_Entry):
     @property
     def rules(self) -> Rules:
         """Rules of the dialogue with the diver: every command but an emergency is confirmed."""
-        return Rules(
-            confirmed=True,
-            confirm_seconds=self.confirm_seconds,
-            stale_seconds=self.stale_seconds,
-            least_confidence=self.least_confidence,
-            emergency_seconds=self.emergency_seconds,
-            emergency_confidence=self.emergency_confidence,
-            cancel=frozenset(self.cancel),
-            emergency=frozenset(self.emergency),
-        )
+        numbers = {each.name for each in fields(Rules)} - {"cancel", "emergency"}
+        cancel, emergency = frozenset(self.cancel), frozenset(self.emergency)
+        return Rules(cancel=cancel, emergency=emergency, **self.model_dump(include=numbers))
 
     def find_actions(self, label: str) -> Sequence[Action]:
         """Return what a gesture does; of an emergency what is tried, in order; empty: nothing."""

@@ -188,8 +188,8 @@ def test_what_packs_to_nothing_does_not_fill_the_disk(tmp_path: Path) -> None:
     )
     bomb = zip_of(tmp_path / "dive.zip", {"dive.mcap": bytes(50_000_000)})
     with running(settings) as server, client_of(server.address) as client:
-        problem = assert_problem(upload(client, bomb), 422, "storage_unavailable")
-        assert "File too large" in str(problem["detail"])
+        problem = assert_problem(upload(client, bomb), 422, "decoder")
+        assert "more room on the disk than a job may use" in str(problem["detail"])
         assert_nothing_kept(client, settings)
 
 

@@ -2,23 +2,27 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 import httpx
 import pytest
 from sqlalchemy import update
+from sqlmodel import select
 
 from app.api.services import invited_takes
 from app.api.services.running_studio import Studio
-from app.store import InvitedTake, NotFound
+from app.store import InvitedTake, Job, NotFound
 from app.store.models import ANSWER_TIME, now
 from tests.api.invitations import INVITED, client_with, divers_of, invite, show, token_of
 from tests.api.languages import LANGUAGES
 from tests.api.recordings import add_recorded_clip, recording_of
 from tests.api.running import Running, assert_problem, until
+from tests.recognition.damaged_clips import write_clip
 
 pytestmark = pytest.mark.usefixtures("judged_soon")
 
+TAKES, ASKED = f"{INVITED}/takes", {"label": "circle", "diver": "Bo"}
 QUESTION = "This looks like 'line'. Is it 'circle'?"
 
 
@@ -191,3 +195,45 @@ def test_the_only_demonstration_of_a_gesture_is_not_removed(
     refused = client.put(place, json={"status": "removed"})
     assert_problem(refused, 409, "demonstration_needed")
     assert divers_of(client, pool, "circle") == ["Bo"]
+
+
+@pytest.mark.parametrize(
+    ("wrong", "words"),
+    [
+        ({"size": (4400, 2200), "frames": 1}, "frames are 4400 x 2200 pixels"),
+        ({"frames": 70, "times": [*range(70)]}, "more than the limit of 60 s"),
+    ],
+)
+def test_a_take_is_seconds_long_and_its_pictures_are_those_of_a_phone(
+    client: httpx.Client, guest: httpx.Client, tmp_path: Path, wrong: dict[str, Any], words: str
+) -> None:
+    video = write_clip(tmp_path / "take.mp4", **wrong).read_bytes()
+    sent = guest.post(TAKES, params=ASKED, files={"file": ("take.mp4", video)})
+    refused = assert_problem(sent, 422, "video_unreadable")
+    assert words in str(refused["detail"])
+    assert client.post("/api/v1/clips", files={"file": ("own.mp4", video)}).status_code == 202
+
+
+def test_the_job_of_a_take_ends_with_its_invitation(
+    client: httpx.Client, studio: Studio, made: dict[str, Any], pool: str
+) -> None:
+    take = studio.invitations.receive(made["id"], label="circle", diver="Bo", size=1024)
+    add_recorded_clip(studio, recording_of("circle"), clip_id=take.clip_id, running=True)
+    job = studio.clips.get(take.clip_id).job
+    assert client.delete(f"{LANGUAGES}/{pool}/invitations/{made['id']}").status_code == 204
+    until(lambda: studio.invitations.take(made["id"], take.id).status == "returned")
+    with studio.jobs._database.reading() as session:
+        assert session.get_one(Job, job.id).status == "cancelled"
+
+
+def test_takes_wait_with_those_of_their_invitation(
+    client: httpx.Client, guest: httpx.Client, studio: Studio, small_clip: Path
+) -> None:
+    video = {"file": ("take.mkv", small_clip.read_bytes())}
+    sent = guest.post(TAKES, params=ASKED, files=video).json()["id"]
+    own = client.post("/api/v1/clips", files=video)
+    with studio.jobs._database.reading() as session:
+        take = session.get_one(InvitedTake, sent)
+        owned = session.get_one(Job, own.json()["job_id"])
+        (job,) = session.exec(select(Job).where(Job.clip_id == take.clip_id))
+    assert job.client == f"invitation {take.invitation_id}" != owned.client

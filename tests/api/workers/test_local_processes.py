@@ -16,7 +16,7 @@ import pytest
 
 from app.api.workers import local_processes
 from app.api.workers.executor import Order, TaskFiles
-from app.api.workers.local_processes import LocalProcesses
+from app.api.workers.local_processes import LocalProcesses, memory_of
 from app.api.workers.tasks import AnyTask, Probe, Record
 from app.recognition.models.storage import DIRECTORY_VARIABLE
 from tests.api.running import until
@@ -160,3 +160,27 @@ def test_jobs_that_are_cancelled_before_they_begin_end_without_a_word() -> None:
     # Until every process that could write has ended.
     done = subprocess.run(command, capture_output=True, text=True, check=True)
     assert done.stderr == ""
+
+
+@pytest.mark.usefixtures("way", "installed_models")
+def test_of_processes_that_hold_too_much_together_the_largest_is_ended(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(local_processes, "LOOK_SECONDS", 0.01)
+    clip = write_clip(tmp_path / "long.mp4", frames=2000)
+
+    async def hold() -> None:
+        processes = LocalProcesses(2**62)
+        async with processes.start(order(record(clip))) as large:
+            while b'"done":0' in await large.readline():
+                pass
+            async with processes.start(order(record(clip, tmp_path))) as small:
+                _, other = processes._running
+                os.kill(other.process, signal.SIGSTOP)
+                processes._most = sum(memory_of(each.process) for each in processes._running) - 1
+                while await large.readline():
+                    pass
+                assert memory_of(other.process) > 0
+                del small
+
+    asyncio.run(hold())

@@ -16,19 +16,19 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from app.recognition.errors import VehicleError
 from app.robot.mavlink import rest_link
-from app.robot.mavlink.actions import DepthStep, ModeStep, build_steps
+from app.robot.mavlink.actions import DepthStep, build_steps
 from app.robot.mavlink.bridge import build_heartbeat
 from app.robot.mavlink.lights_and_tilt import LightsOutput, TiltOutput
 from app.robot.mavlink.links import open_link
 from app.robot.mavlink.rest_link import from_json, to_json
-from app.robot.mavlink.table import Camera, Lights, Vehicle, VehicleTable
+from app.robot.mavlink.table import Camera, Lights, Surface, Vehicle, VehicleTable
 from tests.robot.mavlink.diver import DOES, DONE, TABLE, Diver, wait_until
 from tests.robot.mavlink.mavlink2rest import as_json, as_message, serving
 from tests.robot.mavlink.vehicle import sailing
 
 SENT = [
     build_heartbeat(),
-    ModeStep(mavlink.SUB_MODE_SURFACE, 1, 1).build(2),
+    *(step.build(2) for step in build_steps(Surface(), Vehicle(), 1)),
     DepthStep(5, 1, 1).build(0),
     mavlink.MAVLink_statustext_message(mavlink.MAV_SEVERITY_INFO, b"hold"),
     LightsOutput(Vehicle()).build(1660),

@@ -19,7 +19,7 @@ def get_metrics(request: Request, studio: CurrentStudio) -> Response:
     metrics.set("osg_jobs_open", "Jobs by status", studio.jobs.count_by_status())
     uploads = studio.uploads.active()
     metrics.set("osg_uploads_open", "Resumable uploads under way", {"": len(uploads)})
-    missing = sum(upload.missing for upload in uploads)
+    missing = sum(upload.to_come for upload in uploads)
     metrics.set("osg_upload_bytes_to_come", "Bytes that they still announce", {"": missing})
     disk = shutil.disk_usage(studio.settings.data_dir)
     metrics.set("osg_disk_free_bytes", "Free space of the data folder's disk", {"": disk.free})

@@ -18,7 +18,7 @@ from app.api.http.ranges import keep_single_range
 from app.api.http.schemas import clips as schemas
 from app.api.http.schemas.values import SoFar, TriggerLanguage
 from app.api.ingest.fields import UploadFields
-from app.api.ingest.intake import client_of, inspect, require_place_in_queue, store
+from app.api.ingest.intake import client_of, inspect, joined, require_place_in_queue, store
 from app.api.ingest.multipart import file_form, least_size, receive_file
 from app.api.ingest.quotas import SenderQuota, require_quota
 from app.api.services.clip_responses import shows_pictures, view_clip
@@ -27,6 +27,7 @@ from app.api.services.running_studio import CurrentStudio, Studio, computed_brie
 from app.clip_sources.source import MADE_VIDEO
 from app.store import ClipWithJob, Job, JobStatus
 from app.store.tokens import digest
+from app.store.uploads import room_of
 
 PIXEL_DIGITS = 2
 """Decimals of a coordinate: no pose model resolves a hundredth of a pixel."""
@@ -76,20 +77,23 @@ async def upload_clip(
     await require_quota(quota, studio, least_size(request))
     with studio.clips.receiving() as partial:
         upload = await receive_file(request, partial, studio.settings, reserved=reserved)
-        made = await inspect(
-            partial, studio, name=upload.name, size=upload.size, fields=upload.fields
-        )
-        made.clip.idempotency_key = idempotency_key
-        return await store(made, partial, studio, request)
+        name, fields = upload.name, upload.fields
+        room = room_of(upload.size, joined=fields.chapters is not None)
+        await require_quota(quota, studio, room)
+        async with joined(partial, studio, name=name, fields=fields) as whole:
+            made = await inspect(whole, studio, name=name, fields=fields)
+            made.clip.idempotency_key = idempotency_key
+            return await store(made, whole, studio, request)
 
 
 async def _repeat(request: Request, studio: Studio, earlier: ClipWithJob) -> schemas.ClipAccepted:
     """Answer an upload whose key was used before; its file must be the same."""
     # The body is read to its end, because a browser receives no answer in the middle of a body.
     with studio.clips.receiving() as partial:
-        await receive_file(request, partial, studio.settings)
+        upload = await receive_file(request, partial, studio.settings)
         received = await run_in_threadpool(studio.clips.received, earlier.clip)
-        same = await run_in_threadpool(filecmp.cmp, partial, received, shallow=False)
+        async with joined(partial, studio, name=upload.name, fields=upload.fields) as whole:
+            same = await run_in_threadpool(filecmp.cmp, whole, received, shallow=False)
     if not same:
         detail = "this Idempotency-Key was used for another file; send this one with its own key"
         raise ProblemError(422, "idempotency_key_reused", detail)

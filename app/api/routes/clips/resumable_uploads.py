@@ -11,6 +11,7 @@ import asyncio
 import base64
 import os
 from functools import partial
+from http import HTTPStatus
 from typing import Annotated, BinaryIO, Final
 from weakref import WeakValueDictionary
 
@@ -28,6 +29,7 @@ from app.api.middleware.request_bodies import too_large
 from app.api.services.identities import identity_of
 from app.api.services.running_studio import CurrentStudio, Studio
 from app.store import ClipWithJob, NotFound, Role, Upload
+from app.store.uploads import room_of
 
 VERSION: Final = "1.0.0"
 EXTENSIONS: Final = "creation,termination"
@@ -83,12 +85,13 @@ async def begin_upload(
     # traffic.
     fields = UploadFields.read(given).model_dump(exclude_none=True, mode="json")
     texts = {key: str(value) for key, value in fields.items()}
+    room = room_of(upload_length, joined="chapters" in texts)
     # One at a time: no other upload may begin between the check and the file that reserves the
     # space.
     beginning = _beginning.setdefault(str(studio.clips.folder), asyncio.Lock())
     async with beginning:
         reserved = await intake.require_place_in_queue(request, studio)
-        require_space(studio.clips.folder, upload_length, studio.settings, reserved=reserved)
+        require_space(studio.clips.folder, room, studio.settings, reserved=reserved)
         upload = await run_in_threadpool(
             studio.uploads.create,
             name,
@@ -116,13 +119,13 @@ def tell_offset(request: Request, upload_id: str, studio: CurrentStudio) -> Resp
     """
     if clip := studio.clips.by_idempotency_key(upload_id):
         _require_owner(request, upload_id, clip.clip.owner)
-        size = str(clip.clip.size)
+        size = str(clip.clip.received_size)
         return Response(
             headers=_finished_headers(clip) | {"Upload-Offset": size, "Upload-Length": size}
         )
     upload = studio.uploads.get(upload_id)
     _require_owner(request, upload_id, upload.owner)
-    offset = upload.offset if upload.missing else max(upload.size - 1, 0)
+    offset = min(upload.offset, max(upload.size - 1, 0))
     progress = {"Upload-Offset": str(offset), "Upload-Length": str(upload.size)}
     return Response(headers=_COMMON | progress)
 
@@ -185,7 +188,7 @@ async def _append(request: Request, upload_id: str, studio: Studio, upload_offse
         each for each in await run_in_threadpool(studio.uploads.active) if each.id != upload_id
     ]
     reserved = intake.bytes_to_come(others)
-    require_space(studio.clips.folder, upload.missing, studio.settings, reserved=reserved)
+    require_space(studio.clips.folder, upload.to_come, studio.settings, reserved=reserved)
     await run_in_threadpool(studio.quotas.renew, upload)
     offset = await _write(request, upload, upload_offset, studio)
     headers = _COMMON | {"Upload-Offset": str(offset)}
@@ -237,12 +240,12 @@ async def _answer_again(
 ) -> Response | None:
     """Answer a last part that is sent again because its answer was lost; None if it is not one."""
     clip = await run_in_threadpool(studio.clips.by_idempotency_key, upload_id)
-    if clip is None or offset not in _ends(clip.clip.size):
+    if clip is None or offset not in _ends(clip.clip.received_size):
         return None
     _require_owner(request, upload_id, clip.clip.owner)
     # It is still there when the server ended between the commit of the clip and the answer.
     await run_in_threadpool(studio.uploads.remove, upload_id)
-    headers = _finished_headers(clip) | {"Upload-Offset": str(clip.clip.size)}
+    headers = _finished_headers(clip) | {"Upload-Offset": str(clip.clip.received_size)}
     return Response(status_code=204, headers=headers)
 
 
@@ -285,19 +288,16 @@ async def _accept(request: Request, upload: Upload, studio: Studio) -> dict[str,
     """
     clip = await run_in_threadpool(studio.clips.by_idempotency_key, upload.id)
     if clip is None:
+        name, fields = upload.name, UploadFields.read(upload.fields)
         try:
-            made = await intake.inspect(
-                upload.path,
-                studio,
-                name=upload.name,
-                size=upload.size,
-                fields=UploadFields.read(upload.fields),
-            )
-        except ProblemError:
-            await run_in_threadpool(_forget, upload.id, studio)
+            async with intake.joined(upload.path, studio, name=name, fields=fields) as whole:
+                made = await intake.inspect(whole, studio, name=name, fields=fields)
+                made.clip.idempotency_key, made.clip.owner = upload.id, upload.owner
+                await intake.store(made, whole, studio, request, upload_id=upload.id)
+        except ProblemError as error:
+            if error.status_code < HTTPStatus.INTERNAL_SERVER_ERROR:
+                await run_in_threadpool(_forget, upload.id, studio)
             raise
-        made.clip.idempotency_key, made.clip.owner = upload.id, upload.owner
-        await intake.store(made, upload.path, studio, request, upload_id=upload.id)
         clip = await run_in_threadpool(studio.clips.by_idempotency_key, upload.id)
     # Also when it was a clip already: a crash may have come between the two.
     await run_in_threadpool(studio.uploads.remove, upload.id)

@@ -16,6 +16,7 @@ from app.settings import Limits, Settings
 from app.store import database
 from tests.api.routes.clips.test_resumable_uploads import UPLOADS, begun, offset_of, sent
 from tests.api.running import assert_problem, client_of, running
+from tests.bags.bag_files import zip_of
 
 CLIPS = "/api/v1/clips"
 DISK_BYTES = 4 * 1024 * 1024
@@ -83,6 +84,20 @@ def test_a_full_disk_costs_no_byte_of_an_upload(
         assert len(client.get(CLIPS).json()) == 1
     with sqlite3.connect(settings.data_dir / "studio.db") as opened:
         assert opened.execute("PRAGMA quick_check").fetchone() == ("ok",)
+
+
+@pytest.mark.slow
+@pytest.mark.withstands(row="H22")
+def test_an_upload_stays_that_finds_no_room_while_it_is_looked_at(
+    small_disk: Path, tmp_path: Path
+) -> None:
+    settings = Settings(data_dir=small_disk / "data", limits=Limits(free_disk_bytes=0))
+    content = zip_of(tmp_path / "dive.zip", {"dive.mcap": bytes(4 * DISK_BYTES)}).read_bytes()
+    with running(settings) as server, client_of(server.address) as client:
+        place = begun(client, len(content), "dive.zip")
+        assert_problem(sent(client, place, 0, content), 503, "storage_unavailable")
+        assert offset_of(client, place) == len(content) - 1
+        assert not list((settings.data_dir / "clips").iterdir())
 
 
 @pytest.mark.slow
