@@ -11,11 +11,15 @@ from app.recognition.decision.result import Recognition
 from app.recognition.decision.score_table import ScoreTable, Trace
 from app.recognition.errors import OsgError
 from app.recognition.explanation.demonstration_faults import DemonstrationFault
+from app.recognition.explanation.transcript import Piece, transcribe
+from app.recognition.gestures.demonstration import condense
 from app.recognition.gestures.gesture import Gesture
 from app.recognition.gestures.tuning import Tuning
 from app.recognition.language.language import Language
 from app.recognition.poses.sequence import PoseSequence
 from app.recognition.poses.trajectory import Trajectory
+from app.recognition.preprocessing.repair import repair_poses
+from app.recognition.preprocessing.salience import find_salient_landmarks
 from app.recognition.recognizer import Recognizer
 from app.recognition.recording.segmentation import Take
 
@@ -159,6 +163,12 @@ class RecognitionContext:
 
         """
         return self.recognizer.examine(self.poses)
+
+    @cached_property
+    def strokes(self) -> tuple[Piece, ...]:
+        """The transcript of the take, whatever it is compared with."""
+        moved = condense(repair_poses(self.poses).trajectory)
+        return transcribe(moved, find_salient_landmarks(moved), float(self.poses.time[0]))
 
     @cached_property
     def known_takes(self) -> KnownTakes:

@@ -171,9 +171,10 @@ class Transcript:
     ----------
     shown, expected
         The pieces of both, hand after hand, in seconds of the take's and of the demonstration's
-        clock.
-    differs
-        Index of the first piece that differs, in both; None where none does.
+        clock, each from where its hand begins.
+    differs, differs_in_expected
+        Indices of the first piece that differs, one past the last where one of both ends before;
+        None where none does.
 
     """
 
@@ -182,6 +183,35 @@ class Transcript:
     shown: tuple[Piece, ...]
     expected: tuple[Piece, ...]
     differs: int | None
+    differs_in_expected: int | None
+
+
+@dataclass(frozen=True, kw_only=True)
+class Words:
+    """Words of a line that tells strokes.
+
+    Attributes
+    ----------
+    text
+        The words, with what separates them from those before.
+    start
+        Second of the take at which the stroke begins; None for other words.
+    differs
+        Whether it is the first stroke that differs.
+    folded
+        Strokes behind a fold, of which `text` tells the number.
+
+    """
+
+    __pydantic_config__ = WRITTEN
+
+    text: str
+    start: float | None = None
+    differs: bool = False
+    folded: tuple[Words, ...] = ()
+
+
+Line = tuple[Words, ...]
 
 
 def transcribe(
@@ -216,26 +246,10 @@ def transcribe_gesture(gesture: Gesture) -> tuple[Piece, ...]:
     return transcribe(gesture.trajectory, gesture.salient)
 
 
-def describe_strokes(
-    pieces: Sequence[Piece], most: int | None = None, *, named: bool = False
-) -> str:
-    """Return strokes in words; of two hands, one after the other, and at most so many of each.
-
-    `named` is whether the hand is named where there is one only.
-    """
-    rows: dict[str, list[str]] = {}
-    for each in pieces:
-        rows.setdefault(each.hand, []).append(each.words)
-    words = [", ".join(row[:most]) for row in rows.values()]
-    for index, row in enumerate(rows.values()):
-        if most is not None and len(row) > most:
-            words[index] += f", then {len(row) - most} more"
-    if len(words) < 2 and not named:
-        return "".join(words)
-    if len(words) > len(set(words)) == 1:
-        return f"both hands {words[0]}"
-    sides = [parse_body_part(hand).partition("_")[0] for hand in rows]
-    return "; ".join(f"{side} hand {each}" for side, each in zip(sides, words, strict=True))
+def describe_strokes(pieces: Sequence[Piece]) -> str:
+    """Return strokes in words; of two hands, one after the other."""
+    named = len(_group_by_hand(pieces)) > 1
+    return say_line(_tell_strokes(pieces, named=named, most=2 * len(pieces)))
 
 
 def compare_transcripts(
@@ -251,19 +265,31 @@ def compare_transcripts(
         The one in which the gesture is nearest to the take: a closed one may begin at any stroke.
 
     """
-    turned = [tuple(expected)]
-    if traversal.order[0] not in (0, STEPS - 1) and len({each.hand for each in expected}) == 1:
-        turned = [(*expected[at:], *expected[:at]) for at in range(len(expected))]
-    best = max(turned or [()], key=lambda each: _count_alike(shown, each))
-    alike = _count_alike(shown, best)
-    whole = alike == len(shown) == len(best)
-    return Transcript(shown=tuple(shown), expected=best, differs=None if whole else alike)
+    starts = [0]
+    if traversal.order[0] not in (0, STEPS - 1) and len(_group_by_hand(expected)) == 1:
+        starts = [*range(len(expected))]
+    alike, back = max((_count_alike(shown, (*expected[at:], *expected[:at])), -at) for at in starts)
+    whole = alike == len(shown) == len(expected)
+    meets = len(expected) if alike == len(expected) else (alike - back) % max(1, len(expected))
+    return Transcript(
+        shown=tuple(shown),
+        expected=tuple(expected),
+        differs=None if whole else alike,
+        differs_in_expected=None if whole else meets,
+    )
 
 
 def _count_alike(shown: Sequence[Piece], expected: Sequence[Piece]) -> int:
     """Return how many pieces agree before the first one that differs."""
     pairs = zip(shown, expected, strict=False)
     return len([*itertools.takewhile(lambda pair: not pair[0].differs(pair[1]), pairs)])
+
+
+def _group_by_hand(pieces: Sequence[Piece]) -> dict[str, list[Piece]]:
+    rows: dict[str, list[Piece]] = {}
+    for piece in pieces:
+        rows.setdefault(piece.hand, []).append(piece)
+    return rows
 
 
 def find_drawing_landmarks(trajectory: Trajectory, salient: Sequence[str] = ()) -> tuple[str, ...]:
@@ -436,26 +462,66 @@ class _Run:
         )
 
 
-def describe_transcript(transcript: Transcript, label: str) -> str:
-    """Return what was shown and what was expected, in one sentence."""
-    hands = {each.hand for each in (*transcript.shown, *transcript.expected)}
-    shown, expected = (
-        _say(pieces, transcript.differs, named=len(hands) > 1)
-        for pieces in (transcript.shown, transcript.expected)
+def tell_transcript(transcript: Transcript, label: str) -> tuple[Line, ...]:
+    """Return what was shown and what was expected, a line each."""
+    shown, expected, differs = transcript.shown, transcript.expected, transcript.differs
+    named = len(_group_by_hand((*shown, *expected))) > 1
+    told = _tell_strokes(shown, differs, named=named, linked=True)
+    if shown and expected and differs is None:
+        return ((Words(text=f"You showed the strokes of {label!r}: "), *told),)
+    first = (Words(text="You showed: "), *told)
+    second = _tell_strokes(expected, transcript.differs_in_expected, named=named)
+    return (
+        first if shown else (Words(text="No movement of a hand was seen"),),
+        (Words(text=f"{label!r}: "), *second)
+        if expected
+        else (Words(text=f"{label!r} is a held hand shape"),),
     )
-    if not transcript.shown:
-        return f"No movement of a hand was seen. {label!r} is: {expected}."
-    if not transcript.expected:
-        return f"You showed: {shown}. {label!r} is a held hand shape."
-    if transcript.differs is None:
-        return f"You showed the strokes of {label!r}: {shown}."
-    return f"You showed: {shown}. {label!r}: {expected}."
 
 
-def _say(pieces: Sequence[Piece], differs: int | None, *, named: bool) -> str:
-    """Return at most `MOST_TOLD` strokes in words, and always the first that differs."""
-    hands = [each.hand for each in pieces]
-    most = MOST_TOLD // max(1, len(set(hands)))
-    if differs is not None and differs < len(hands):
-        most = max(most, differs + 1 - hands.index(hands[differs]))
-    return describe_strokes(pieces, most, named=named) or "no stroke"
+def say_line(line: Line) -> str:
+    """Return a line in words."""
+    return "".join(each.text for each in line)
+
+
+def _tell_strokes(
+    pieces: Sequence[Piece],
+    differs: int | None = None,
+    *,
+    named: bool,
+    linked: bool = False,
+    most: int = MOST_TOLD,
+) -> Line:
+    """Tell strokes, hand after hand; at most `most` before the fold, and the first that differs."""
+    marked = pieces[differs] if differs is not None and differs < len(pieces) else None
+    sides = {
+        f"{parse_body_part(hand).partition('_')[0]} hand ": row
+        for hand, row in _group_by_hand(pieces).items()
+    }
+    rows = list(sides.items())
+    if len(rows) == 2 and not marked:
+        one, other = ([piece.words for piece in row] for row in sides.values())
+        rows = [("both hands ", rows[0][1])] if one == other else rows
+    line: list[Words] = []
+    for name, row in rows:
+        line += [Words(text="; ")] if line else []
+        line += [Words(text=name)] if named else []
+        until = most // len(rows)
+        if marked in row:
+            until = max(until, row.index(marked) + 1)
+        told = [
+            (
+                *([Words(text=", ")] if index else []),
+                Words(
+                    text=piece.words,
+                    start=piece.start if linked else None,
+                    differs=piece is marked,
+                ),
+            )
+            for index, piece in enumerate(row)
+        ]
+        line += itertools.chain(*told[:until])
+        if folded := told[until:]:
+            behind = tuple(itertools.chain(*folded))
+            line.append(Words(text=f", then {len(folded)} more", folded=behind))
+    return (*line, Words(text=" (ends)", differs=True)) if differs == len(pieces) else tuple(line)

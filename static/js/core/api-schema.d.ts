@@ -1897,6 +1897,14 @@ export interface components {
              */
             readonly sentence: string;
             /**
+             * Strokes
+             * @description What was shown and what was expected, a line each; empty where it tells nothing.
+             *
+             *     Without a cause they are the sentence. Beside a cause they are told where they differ, and
+             *     where the take's could be followed.
+             */
+            readonly strokes: components["schemas"]["Words"][][];
+            /**
              * Details
              * @description The numbers behind the sentence, as sentences of their own.
              */
@@ -4398,9 +4406,10 @@ export interface components {
          *     ----------
          *     shown, expected
          *         The pieces of both, hand after hand, in seconds of the take's and of the demonstration's
-         *         clock.
-         *     differs
-         *         Index of the first piece that differs, in both; None where none does.
+         *         clock, each from where its hand begins.
+         *     differs, differs_in_expected
+         *         Indices of the first piece that differs, one past the last where one of both ends before;
+         *         None where none does.
          */
         Transcript: {
             /** Shown */
@@ -4409,6 +4418,8 @@ export interface components {
             expected: components["schemas"]["Piece"][];
             /** Differs */
             differs: number | null;
+            /** Differs In Expected */
+            differs_in_expected: number | null;
         };
         /**
          * TriggerDraft
@@ -4565,6 +4576,37 @@ export interface components {
             share: number;
             /** Against */
             against: number | null;
+        };
+        /**
+         * Words
+         * @description Words of a line that tells strokes.
+         *
+         *     Attributes
+         *     ----------
+         *     text
+         *         The words, with what separates them from those before.
+         *     start
+         *         Second of the take at which the stroke begins; None for other words.
+         *     differs
+         *         Whether it is the first stroke that differs.
+         *     folded
+         *         Strokes behind a fold, of which `text` tells the number.
+         */
+        Words: {
+            /** Text */
+            text: string;
+            /** Start */
+            start: number | null;
+            /**
+             * Differs
+             * @default false
+             */
+            differs: boolean;
+            /**
+             * Folded
+             * @default []
+             */
+            folded: components["schemas"]["Words"][];
         };
         /**
          * WorkspaceOptions

@@ -16,11 +16,9 @@ import { trialBar, tryOut } from "./intervention-trial.js";
 import { seek } from "./playback.js";
 import { recogniseWith } from "./studio-view.js";
 
-/** @import { Counterfactual, Explanation, Piece, Recognition, SideEffect, State } from "../core/types.d.ts" */
+/** @import { Counterfactual, Explanation, Recognition, SideEffect, State, Words } from "../core/types.d.ts" */
 
 const MOST_PARTS = 3; // Joints shown over time: those with the highest cost.
-const MOST_TOLD = 7; // Strokes told before a fold, as in a sentence (transcript.py).
-const UNFOLLOWED = new Set(["keypoints_jumped", "other_person", "not_seen"]);
 const LANE = 14; // Height of a joint's lane, in the drawing's own units.
 
 /**
@@ -328,74 +326,34 @@ function remediesOf(why) {
 }
 
 /**
- * The strokes of the take or of the gesture in words, hand after hand; the first one that differs
- * is marked, and what comes long after it is folded. Those of the take go to their moment.
+ * Words of a line that tells strokes: those of the take go to their moment.
  *
- * @param {string} title
- * @param {Piece[]} pieces
- * @param {Explanation} why
+ * @param {Words} words
+ * @returns {HTMLElement}
  */
-function strokes(title, pieces, { transcript: { shown, expected, differs } }) {
-  const hands = [...new Set(pieces.map(({ hand }) => hand))];
-  const named = new Set([...shown, ...expected].map(({ hand }) => hand)).size > 1;
-  const first = differs === null ? undefined : pieces[differs];
-  /** @param {Piece} piece @param {number} index */
-  const words = (piece, index) => {
-    const marked = piece === first ? "differs" : "";
-    const told = h("span", { className: marked }, piece.words);
-    return [index ? ", " : "", pieces === shown ? goTo(piece.start, piece.words, marked) : told];
-  };
-  const rows = hands.map((hand, index) => {
-    const row = pieces.filter((each) => each.hand === hand);
-    const most = Math.max(Math.floor(MOST_TOLD / hands.length), first ? row.indexOf(first) + 1 : 0);
-    return [
-      index ? "; " : "",
-      named ? `${readable(hand).split(" ")[0]} hand ` : "",
-      row.slice(0, most).flatMap(words),
-      row.length > most
-        ? h(
-            "details",
-            {},
-            h("summary", {}, `, then ${row.length - most} more`),
-            row.slice(most).flatMap(words),
-          )
-        : null,
-    ];
-  });
-  return h(
-    "p",
-    {},
-    h("b", {}, `${title}: `),
-    rows.flat(2),
-    pieces.length === differs ? h("span", { className: "differs" }, " (ends)") : null,
-  );
+function drawn({ text, start, differs, folded }) {
+  if (folded.length) return h("details", {}, h("summary", {}, text), folded.map(drawn));
+  const marked = differs ? "differs" : "";
+  return start === null ? h("span", { className: marked }, text) : goTo(start, text, marked);
 }
 
 /**
- * The strokes of both in words; without a cause they are the sentence. Beside a cause they are told
- * where they differ, and where the take's could be followed.
+ * The strokes of both in words; without a cause they are the sentence.
  *
  * @param {Explanation} why
  */
-function transcriptOf(why) {
-  const { shown, expected, differs } = why.transcript;
-  const unfollowed = why.causes.some(({ kind }) => UNFOLLOWED.has(kind));
-  if (why.right || !shown.length || !expected.length) return null;
-  if (why.causes.length && (differs === null || unfollowed)) return null;
-  return h(
-    "div",
-    {
-      className: why.causes.length ? "transcript" : "transcript why-sentence",
-      role: "group",
-      "aria-label": "Strokes in words",
-    },
-    strokes("You showed", shown, why),
-    strokes(why.expected, expected, why),
-    differs === null && why.pair?.includes(why.expected)
-      ? h("p", {}, `${why.pair.find((each) => each !== why.expected)} is about as near.`)
-      : null,
-  );
-}
+const transcriptOf = ({ causes, strokes }) =>
+  strokes.length
+    ? h(
+        "div",
+        {
+          className: causes.length ? "transcript" : "transcript why-sentence",
+          role: "group",
+          "aria-label": "Strokes in words",
+        },
+        strokes.map((line) => h("p", {}, line.map(drawn))),
+      )
+    : null;
 
 /** @param {Explanation} why */
 const notesOf = ({ notes }) =>

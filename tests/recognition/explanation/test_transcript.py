@@ -13,9 +13,11 @@ from hypothesis import strategies as st
 from app.recognition import Language
 from app.recognition.explanation.transcript import (
     Piece,
+    Transcript,
     compare_transcripts,
     describe_strokes,
-    describe_transcript,
+    say_line,
+    tell_transcript,
     transcribe,
     transcribe_gesture,
 )
@@ -58,6 +60,11 @@ def say(path: FloatArray) -> str:
     return describe_strokes(transcribe(hand(path)))
 
 
+def tell(transcript: Transcript, label: str) -> str:
+    """Return a transcript as a sentence tells it."""
+    return " ".join(f"{say_line(line)}." for line in tell_transcript(transcript, label))
+
+
 @pytest.mark.parametrize(
     ("path", "words"),
     [
@@ -92,17 +99,17 @@ def test_a_curve_tells_where_it_leads_if_it_leads_anywhere() -> None:
 def test_a_long_movement_is_told_up_to_where_it_differs() -> None:
     zigzag = [(0.5 * (step % 2), 0.2 * step) for step in range(14)]
     shown = transcribe(hand(draw(*zigzag)))
-    told = describe_transcript(compare_transcripts(shown, shown[:3]), "zigzag")
+    told = tell(compare_transcripts(shown, shown[:3]), "zigzag")
     assert ", then 6 more. 'zigzag': " in told
     late = compare_transcripts(shown, (*shown[:9], replace(shown[9], direction=90.0)))
     assert late.differs == 9
-    assert ", then 3 more. 'zigzag': " in describe_transcript(late, "zigzag")
+    assert ", then 3 more. 'zigzag': " in tell(late, "zigzag")
 
 
 def test_the_hand_is_named_where_the_gesture_uses_both() -> None:
     shown = transcribe(hand(draw((0, 0), (1, 0))))
     both = (*transcribe(hand(draw((0, 0), (0, 1)), "left_wrist")), *shown)
-    told = describe_transcript(compare_transcripts(shown, both), "both")
+    told = tell(compare_transcripts(shown, both), "both")
     assert told == "You showed: right hand right. 'both': left hand down; right hand right."
 
 
@@ -196,7 +203,7 @@ def test_the_first_stroke_that_differs_is_found() -> None:
     expected = transcribe_gesture(TABLE.gesture("triangle"))
     found = compare_transcripts(shown, expected)
     assert found.differs == 0
-    assert describe_transcript(found, "triangle") == (
+    assert tell(found, "triangle") == (
         "You showed: down right, up right. 'triangle': down left, right, up left."
     )
 
