@@ -31,7 +31,6 @@ from app.recognition.explanation.undoing import Comparison, Undone, Where, compa
 from app.recognition.gestures.gesture import Gesture
 from app.recognition.poses.trajectory import TURNED_AWAY, Trajectory
 from app.recognition.preprocessing.jumps import find_other_body, find_unsteady
-from app.recognition.preprocessing.repair import repair_poses
 from app.recognition.recognizer import Recognizer
 
 EXPLAINED: Final = 0.6
@@ -311,7 +310,7 @@ def _list_bad_frames(
     names = [name for name in gesture.salient if name in poses.landmarks]
     if not names or not poses.seen.any():
         return
-    raw, repair = Trajectory.from_poses(poses), repair_poses(poses)
+    raw, repair = Trajectory.from_poses(poses), context.repair
     unseen = np.asarray(~poses.select(names).seen.all(axis=1))
     masks: dict[str, tuple[npt.NDArray[np.bool_], float]] = {
         "keypoints_jumped": (find_unsteady(raw, names), LEAST_JUMPED),

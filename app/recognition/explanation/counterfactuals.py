@@ -25,7 +25,6 @@ from app.recognition.explanation.undoing import compare_with, find_better_range
 from app.recognition.gestures.demonstration import MAX_DEMONSTRATIONS
 from app.recognition.gestures.switches import Switch
 from app.recognition.gestures.tuning import describe_repair
-from app.recognition.preprocessing.repair import repair_poses
 from app.recognition.text.wording import humanize
 
 TRIM_STEP = 0.1
@@ -291,7 +290,7 @@ def list_interventions(
     """
     yield list(_cuts(context, expected, blame, faulty=faulty))
     yield from _trims(context)
-    repaired = float(repair_poses(context.poses).touched.mean())
+    repaired = float(context.repair.touched.mean())
     if repaired > 0:
         yield [Intervention("keypoint_repair", repaired, {"on": not context.recognizer.repairs})]
     yield from _gestures(context, expected)

@@ -20,6 +20,7 @@ from app.recognition.explanation.counterfactuals import (
     Counterfactual,
     find_counterfactuals,
 )
+from app.recognition.explanation.strokes import transcribe_gesture
 from app.recognition.explanation.transcript import (
     Line,
     Transcript,
@@ -27,13 +28,16 @@ from app.recognition.explanation.transcript import (
     compare_transcripts,
     say_line,
     tell_transcript,
-    transcribe_gesture,
 )
 from app.recognition.explanation.vote_breakdown import VoterBreakdown, break_down_votes
 from app.recognition.features.traversals import AS_SHOWN
+from app.recognition.text.wording import list_some
 
 UNFOLLOWED: Final = {CauseKind.keypoints_jumped, CauseKind.other_person, CauseKind.not_seen}
 """Causes for which neither the strokes nor the turn of the diver are those that were shown."""
+
+MOST_TIMES: Final = 4
+"""Frames that the numbers name by their time."""
 
 CLEARLY_TURNED: Final = 15.0
 """Least degrees by which a diver is turned that the numbers tell."""
@@ -199,6 +203,9 @@ class Explanation(BaseModel):
             )
         if self.causes and self.strokes:
             yield self._say_strokes()
+        if jumped := self.transcript.bridged:
+            times = list_some([f"{each:.2f}" for each in jumped], MOST_TIMES)
+            yield f"A hand jumped in {len(jumped)} frames, at {times} s; its path is bridged there."
         yield from (f"Also: {each.sentence}" for each in self.causes[1:3])
         if self._is_followed and self.facing is not None and abs(self.facing) >= CLEARLY_TURNED:
             side = "left" if self.facing > 0 else "right"
@@ -279,6 +286,7 @@ def explain(
             context.strokes,
             transcribe_gesture(demonstrations[table.nearest_demonstration(at)]),
             table.traversals[at] or AS_SHOWN,
+            context.bridged,
         ),
         counterfactuals=found,
         tried=tried,

@@ -6,11 +6,8 @@ from dataclasses import dataclass
 
 from app.recognition.explanation.alignment import Alignment, align
 from app.recognition.explanation.causes import prove_change, tell_change
-from app.recognition.explanation.transcript import (
-    Piece,
-    compare_transcripts,
-    transcribe_gesture,
-)
+from app.recognition.explanation.strokes import Piece, transcribe_gesture
+from app.recognition.explanation.transcript import compare_transcripts
 from app.recognition.explanation.undoing import compare_with
 from app.recognition.gestures.demonstration import condense
 from app.recognition.recognizer import Recognizer

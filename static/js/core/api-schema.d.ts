@@ -4410,6 +4410,8 @@ export interface components {
          *     differs, differs_in_expected
          *         Indices of the first piece that differs, one past the last where one of both ends before;
          *         None where none does.
+         *     bridged
+         *         Seconds of the take at which a hand jumped, so that its path is a straight line there.
          */
         Transcript: {
             /** Shown */
@@ -4420,6 +4422,11 @@ export interface components {
             differs: number | null;
             /** Differs In Expected */
             differs_in_expected: number | null;
+            /**
+             * Bridged
+             * @default []
+             */
+            bridged: number[];
         };
         /**
          * TriggerDraft
@@ -4589,6 +4596,8 @@ export interface components {
          *         Second of the take at which the stroke begins; None for other words.
          *     differs
          *         Whether it is the first stroke that differs.
+         *     bridged
+         *         Whether the hand jumped meanwhile, so that a part of the stroke is not seen.
          *     folded
          *         Strokes behind a fold, of which `text` tells the number.
          */
@@ -4602,6 +4611,11 @@ export interface components {
              * @default false
              */
             differs: boolean;
+            /**
+             * Bridged
+             * @default false
+             */
+            bridged: boolean;
             /**
              * Folded
              * @default []

@@ -331,10 +331,13 @@ function remediesOf(why) {
  * @param {Words} words
  * @returns {HTMLElement}
  */
-function drawn({ text, start, differs, folded }) {
+function drawn({ text, start, differs, bridged, folded }) {
   if (folded.length) return h("details", {}, h("summary", {}, text), folded.map(drawn));
-  const marked = differs ? "differs" : "";
-  return start === null ? h("span", { className: marked }, text) : goTo(start, text, marked);
+  const marked = `${differs ? "differs" : ""} ${bridged ? "bridged" : ""}`;
+  const told = start === null ? h("span", {}, text) : goTo(start, text);
+  told.className += marked;
+  if (bridged) told.title = "The hand jumped here: its path is bridged by a line.";
+  return told;
 }
 
 /**

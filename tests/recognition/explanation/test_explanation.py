@@ -6,13 +6,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from app.recognition import Gesture, Language, OsgError, PoseSequence, Recognizer
 from app.recognition.explanation.blame import Blame, Evidence
 from app.recognition.explanation.causes import Cause, CauseKind
 from app.recognition.explanation.context import RecognitionContext
 from app.recognition.explanation.explanation import Explanation, explain
-from app.recognition.explanation.transcript import describe_strokes, transcribe_gesture
+from app.recognition.explanation.strokes import transcribe_gesture
+from app.recognition.explanation.transcript import describe_strokes
 from app.recognition.gestures.profile import PROFILES
 from app.recognition.gestures.tuning import Tuning
 from app.recognition.poses.sequence import FloatArray
@@ -338,3 +340,42 @@ def test_a_demonstration_is_told_alike_as_a_gesture_and_as_a_take() -> None:
         take = context(recording(shown), drawn_recognizer("full"))
         made = Gesture.from_demonstration(gesture.label, take.poses)
         assert take.strokes == transcribe_gesture(made)
+
+
+@pytest.fixture(scope="module")
+def box() -> Recognizer:
+    """Return a recogniser of a square whose hand stops at the corners, and others."""
+    drawn = Gesture.from_demonstration("box", recording(stopping(square, 4), frames=90))
+    return Recognizer(drawn_language().without("square").with_gesture(drawn), "full")
+
+
+@settings(max_examples=40)
+@given(
+    st.integers(8, 30),
+    st.floats(0.2, 0.8),
+    st.floats(0.06, 0.15),
+    st.floats(0.7, 1.5),
+    st.floats(0, 2 * np.pi),
+    st.sampled_from([("left_wrist", "right_wrist"), ("right_wrist",), ("left_wrist",)]),
+)
+def test_a_keypoint_that_jumps_changes_neither_strokes_nor_label(
+    box: Recognizer,
+    rate: int,
+    share: float,
+    seconds: float,
+    far: float,
+    angle: float,
+    hands: tuple[str, ...],
+) -> None:
+    clean = recording(stopping(square, 4), frames=4 * rate, rate=rate)
+    xy, first = clean.xy.copy(), int(share * len(clean))
+    away = slice(first, first + max(1, int(seconds * rate)))
+    for hand in hands:
+        by = 120 * far * np.array([np.cos(angle), np.sin(angle)])
+        xy[away, clean.landmarks.index(hand)] += by
+    jumped = context(replace(clean, xy=xy), box)
+    assert describe_strokes(jumped.strokes) == "right, down, left, up"
+    assert jumped.result.label == "box"
+    told = explain(jumped, "circle", with_counterfactuals=False)
+    assert bool(told.transcript.bridged) == ("right_wrist" in hands)
+    assert any("is bridged there" in each for each in told.details) == ("right_wrist" in hands)
