@@ -16,7 +16,7 @@ import { trialBar, tryOut } from "./intervention-trial.js";
 import { seek } from "./playback.js";
 import { recogniseWith } from "./studio-view.js";
 
-/** @import { Counterfactual, Explanation, Recognition, SideEffect, State, Words } from "../core/types.d.ts" */
+/** @import { Explanation, Recognition, SideEffect, State, Words } from "../core/types.d.ts" */
 
 const MOST_PARTS = 3; // Joints shown over time: those with the highest cost.
 const LANE = 14; // Height of a joint's lane, in the drawing's own units.
@@ -133,48 +133,18 @@ export function drawCosts({ why, result, timeline }) {
   );
 }
 
-/** @param {SideEffect} effect */
-const effectOnOthers = ({ takes, repaired, broken }) =>
-  repaired || broken
-    ? `repairs ${repaired}, breaks ${broken} of ${takes} other takes`
-    : "repairs no other take";
-
 /**
  * The effect of an intervention on other takes whose gesture is known.
  *
  * @param {SideEffect | null} effect
  */
-const effectOf = (effect) =>
-  effect &&
-  h(
-    "small",
-    { className: "dim num" },
-    effect.takes ? effectOnOthers(effect) : "untested: no other takes are known",
-  );
-
-/**
- * The result of an intervention; for a take added as a demonstration it is right by construction.
- *
- * @param {Counterfactual} found
- */
-const resultOf = ({ change, label, confidence }) =>
-  change.kind === "further_demonstration"
-    ? h("small", { className: "dim" }, "right by construction")
-    : h("small", { className: "dim num" }, `${label}, ${Math.round(100 * confidence)} %`);
-
-/** @param {Counterfactual} found */
-function remedy(found) {
-  return h(
-    "li",
-    {},
-    h(
-      "button",
-      { type: "button", onclick: () => tryOut(found) },
-      h("span", {}, found.change.words),
-    ),
-    resultOf(found),
-    effectOf(found.effect),
-  );
+function effectOf(effect) {
+  if (!effect) return "changes this take alone";
+  const { takes, repaired, broken } = effect;
+  if (!takes) return "untested: no other takes are known";
+  return repaired || broken
+    ? `repairs ${repaired}, breaks ${broken} of ${takes} other takes`
+    : "repairs no other take";
 }
 
 /**
@@ -306,24 +276,20 @@ const detailsOf = ({ details }) =>
   );
 
 /**
- * The counterfactuals as buttons that try them.
+ * The one thing to do: the best change as a button that tries it; nothing where none helps.
  *
  * @param {Explanation} why
  */
-function remediesOf(why) {
-  if (why.right) return null;
-  const offered = why.counterfactuals;
-  return h(
-    "div",
-    { className: "remedies" },
-    offered.length
-      ? [
-          h("h2", {}, `It would have been recognised as ${why.expected}`),
-          h("ul", {}, offered.map(remedy)),
-        ]
-      : note(`None of the ${why.tried} changes that were tried helps without harm.`),
-  );
-}
+const remedyOf = ({ right, expected, counterfactuals: [best] }) =>
+  right || !best
+    ? null
+    : h(
+        "p",
+        { className: "remedies" },
+        `Recognised as ${expected} `,
+        h("button", { type: "button", onclick: () => tryOut(best) }, best.change.words),
+        h("small", { className: "dim num" }, ` ${effectOf(best.effect)}`),
+      );
 
 /**
  * Words of a line that tells strokes: those of the take go to their moment.
@@ -378,7 +344,7 @@ function reasons(why) {
       : h("p", { className: "why-sentence" }, `${why.sentence} `, to),
     transcript,
     notesOf(why),
-    remediesOf(why),
+    remedyOf(why),
     detailsOf(why),
   ];
 }

@@ -17,10 +17,10 @@ from app.recognition.explanation.strokes import transcribe_gesture
 from app.recognition.explanation.transcript import describe_strokes
 from app.recognition.gestures.profile import PROFILES
 from app.recognition.gestures.tuning import Tuning
-from app.recognition.poses.sequence import FloatArray
 from tests.recognition.damaged_poses import with_sides_exchanged
 from tests.recognition.demonstrations import drawn_language, drawn_recognizer
 from tests.recognition.explanation.test_causes import corners
+from tests.recognition.explanation.test_strokes import stopping
 from tests.recognition.strategies import Shape, circle, line, recording, recordings, square, wedge
 
 
@@ -308,17 +308,6 @@ def test_a_recording_has_one_transcript_whatever_it_is_compared_with(query: Shap
     ]
 
 
-def stopping(shape: Shape, sides: int) -> Shape:
-    """Return a shape of sides whose hand stops at every corner, as people draw."""
-
-    def stopped(share: FloatArray) -> FloatArray:
-        side = np.minimum(np.floor(share * sides), sides - 1)
-        part = share * sides - side
-        return shape((side + part**3 * (10 - 15 * part + 6 * part**2)) / sides)
-
-    return stopped
-
-
 BELOW = ((-0.4, 0.1), (-1.2, 0.1), (-1.2, -0.7), (-0.4, -0.7), (-0.4, 0.1))
 
 
@@ -354,7 +343,7 @@ def box() -> Recognizer:
     st.integers(8, 30),
     st.floats(0.2, 0.8),
     st.floats(0.06, 0.15),
-    st.floats(0.7, 1.5),
+    st.floats(0.8, 1.5),
     st.floats(0, 2 * np.pi),
     st.sampled_from([("left_wrist", "right_wrist"), ("right_wrist",), ("left_wrist",)]),
 )

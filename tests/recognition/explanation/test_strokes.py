@@ -17,6 +17,7 @@ from app.recognition.explanation.transcript import (
 )
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.trajectory import Trajectory
+from tests.recognition.strategies import Shape
 
 TABLE = Language.load("languages/osg-table-2.json")
 
@@ -42,6 +43,17 @@ def hand(path: FloatArray, name: str = "right_wrist") -> Trajectory:
     count = len(path)
     moments = np.arange(count) / RATE
     return Trajectory(landmarks=(name,), xy=path[:, None] + 0.0, time=moments, unit="torso_length")
+
+
+def stopping(shape: Shape, sides: int) -> Shape:
+    """Return a shape of sides whose hand stops at every corner, as people draw."""
+
+    def stopped(share: FloatArray) -> FloatArray:
+        side = np.minimum(np.floor(share * sides), sides - 1)
+        part = share * sides - side
+        return shape((side + part**3 * (10 - 15 * part + 6 * part**2)) / sides)
+
+    return stopped
 
 
 SQUARE = ((0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0), (0.0, 0.0))

@@ -81,7 +81,7 @@ def test_a_jab_is_no_jump() -> None:
 @pytest.mark.parametrize("rate", [5, 8, 15, 30, 60])
 def test_a_hand_that_jumps_and_goes_on_is_found_at_every_rate(rate: int) -> None:
     trajectory = Trajectory.from_poses(recording(circle, frames=3 * rate, rate=rate))
-    assert found(thrown_off(trajectory, [rate], (0.4, 1.1))) == [rate]
+    assert found(thrown_off(trajectory, [rate], (0.9, 1.6))) == [rate]
 
 
 def test_what_a_tracker_blends_on_its_way_back_is_no_place_either() -> None:
