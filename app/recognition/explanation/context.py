@@ -43,6 +43,11 @@ class KnownTake:
     query: Trajectory
     without: tuple[tuple[str, int], ...] = ()
 
+    @cached_property
+    def strokes(self) -> tuple[Piece, ...]:
+        """The transcript of the take."""
+        return transcribe(self.query, find_salient_landmarks(self.query))
+
     def after_leaving_out(self, left_out: tuple[str, int]) -> KnownTake:
         """Return the take in the language that lacks one more demonstration."""
         label, number = left_out

@@ -116,6 +116,11 @@ def compare_transcripts(
     )
 
 
+def are_alike(one: Sequence[Piece], other: Sequence[Piece]) -> bool:
+    """Return whether two movements have the same strokes, as many and none that differs."""
+    return _count_alike(one, other) == len(one) == len(other)
+
+
 def _count_alike(shown: Sequence[Piece], expected: Sequence[Piece]) -> int:
     """Return how many pieces agree before the first one that differs."""
     pairs = zip(shown, expected, strict=False)

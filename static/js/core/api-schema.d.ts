@@ -1405,6 +1405,9 @@ export interface components {
          *         How many known takes are read right with the change only, and without it only.
          *     evidence
          *         Against the demonstration.
+         *     odd
+         *         How its strokes differ from those in which the takes agree, as a sentence; empty: they do
+         *         not.
          */
         Blame: {
             /** Label */
@@ -1429,6 +1432,11 @@ export interface components {
             /** Broken */
             broken: number;
             evidence: components["schemas"]["Evidence"];
+            /**
+             * Odd
+             * @default
+             */
+            odd: string;
             /**
              * Sentence
              * @description The fault and the remedy, at most fifteen words.
