@@ -215,47 +215,34 @@ async function keepAsTest(result) {
 const note = (text) => h("p", { className: "dim" }, text);
 
 /**
- * The button that goes to the moment of the cause; nothing where it lasts throughout.
- *
- * @param {Explanation} why
+ * @param {string} words
+ * @param {() => unknown} onclick
  */
-function momentOf({ causes: [cause] }) {
-  return cause && cause.start !== null ? goTo(cause.start, `Go to ${moment(cause.start)}`) : null;
-}
+const link = (words, onclick) => h("button", { type: "button", className: "link", onclick }, words);
 
 /**
  * A button that goes to a moment.
  *
  * @param {number} seconds
  * @param {string} words
- * @param {string} [marked]
  */
-const goTo = (seconds, words, marked = "") =>
-  h(
-    "button",
-    {
-      type: "button",
-      className: `link ${marked}`,
-      onclick: () => {
-        if (state.timeline) seek(nearestFrame(state.timeline.time, seconds));
-      },
-    },
-    words,
-  );
+const goTo = (seconds, words) =>
+  link(words, () => {
+    if (state.timeline) seek(nearestFrame(state.timeline.time, seconds));
+  });
 
 /**
- * The button that shows the demonstrations of a gesture of which one is at fault.
+ * The button beside a cause: its demonstrations, the gestures that are alike, or its moment;
+ * nothing where it lasts throughout.
  *
  * @param {Explanation} why
  */
-function demonstrationsOf({ causes: [cause], blame: [blamed] }) {
+function placeOf({ causes: [cause], blame: [blamed] }) {
   const label = blamed?.label ?? cause?.label;
-  if (!label || (!blamed && cause.kind !== "demonstration")) return null;
-  return h(
-    "button",
-    { type: "button", className: "link", onclick: () => openDemonstrations(label) },
-    "Show its demonstrations",
-  );
+  if (cause?.kind === "near_gesture") return link("Change one in Health", () => go("health"));
+  if (label && (blamed || cause.kind === "demonstration"))
+    return link("Show its demonstrations", () => openDemonstrations(label));
+  return cause && cause.start !== null ? goTo(cause.start, `Go to ${moment(cause.start)}`) : null;
 }
 
 /**
@@ -299,9 +286,9 @@ const remedyOf = ({ right, expected, counterfactuals: [best] }) =>
  */
 function drawn({ text, start, differs, bridged, folded }) {
   if (folded.length) return h("details", {}, h("summary", {}, text), folded.map(drawn));
-  const marked = `${differs ? "differs" : ""} ${bridged ? "bridged" : ""}`;
+  const marked = [differs ? "differs" : "", bridged ? "bridged" : ""].filter(Boolean);
   const told = start === null ? h("span", {}, text) : goTo(start, text);
-  told.className += marked;
+  told.classList.add(...marked);
   if (bridged) told.title = "The hand jumped here: its path is bridged by a line.";
   return told;
 }
@@ -337,11 +324,10 @@ const notesOf = ({ notes }) =>
 /** @param {Explanation} why */
 function reasons(why) {
   const transcript = transcriptOf(why);
-  const to = demonstrationsOf(why) ?? momentOf(why);
   return [
     transcript && !why.causes.length
       ? null
-      : h("p", { className: "why-sentence" }, `${why.sentence} `, to),
+      : h("p", { className: "why-sentence" }, `${why.sentence} `, placeOf(why)),
     transcript,
     notesOf(why),
     remedyOf(why),

@@ -97,6 +97,26 @@ def test_after_seven_strokes_the_rest_is_folded(
     expect(shown.get_by_role("button", name="stroke 8")).to_be_visible()
 
 
+def test_gestures_that_are_alike_are_changed_in_health(
+    open_page: OpenPage, server: Running, clips: Path
+) -> None:
+    def call_alike(route: Route) -> None:
+        answer = route.fetch()
+        why = answer.json()
+        cause = {"kind": "near_gesture", "sentence": "They are nearly alike.", "start": None}
+        why.update(causes=[cause], sentence=cause["sentence"], blame=[])
+        route.fulfill(response=answer, json=why)
+
+    page = open_page()
+    add_example(server, clips)
+    page.reload()
+    page.route("**/explanation*", call_alike)
+    page.get_by_role("button", name="All keys").click()
+    page.get_by_role("button", name="Example").click()
+    page.get_by_role("button", name="Change one in Health").click()
+    expect(page.locator("#view-health")).to_be_visible()
+
+
 def test_the_tour_shows_its_steps_on_the_example(
     open_page: OpenPage, server: Running, clips: Path
 ) -> None:
