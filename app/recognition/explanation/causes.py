@@ -199,7 +199,7 @@ def find_causes(
     at = recognizer.language.labels.index(expected)
     table = recognizer.compare(context.trace.query)
     gesture = table.find_nearest_demonstration(recognizer.language.gestures, at)
-    if _only_sinks(context):
+    if _only_sinks(context) and not agrees(context, expected):
         return (Cause(kind=CauseKind.not_seen, sentence=SENTENCES["sinks"]),)
     found = list(_list_seen(context, table, gesture))
     if cut := _find_cut(context, expected, float(table.novelty[at])):

@@ -83,7 +83,7 @@ def find_outliers(trajectory: Trajectory) -> Mask:
     finite, kinked = np.isfinite(paths), _has_kink(paths)
     if finite.all() and not kinked.any():
         return off
-    reaching = np.array([trajectory.landmarks[each] not in BODY for each in followed])
+    reaching = np.array([trajectory.landmarks[each] not in BODY for each in followed], bool)
     known = np.asarray(finite[..., 0] & finite[..., 1])
     whole: Mask = np.asarray(known.all(axis=0))
     together = np.flatnonzero(whole & kinked)
@@ -142,11 +142,13 @@ def _find_blended(off: Mask, path: FloatArray, time: FloatArray) -> Mask:
     blended = np.zeros_like(off)
     for outlier in np.flatnonzero(off).tolist():
         for at in (outlier - 1, outlier + 1):
-            known = np.flatnonzero(~off & (np.arange(len(off)) != at))
-            after = int(np.searchsorted(known, at))
-            if off[at] or not 0 < after < len(known):
+            ends = [at - 1, at + 1]
+            while ends[0] >= 0 and off[ends[0]]:
+                ends[0] -= 1
+            while ends[1] < len(off) and off[ends[1]]:
+                ends[1] += 1
+            if off[at] or ends[0] < 0 or ends[1] == len(off):
                 continue
-            ends = known[[after - 1, after]]
             away, jump = (
                 path[each] - [np.interp(time[each], time[ends], x) for x in path[ends].T]
                 for each in (at, outlier)
