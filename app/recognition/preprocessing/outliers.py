@@ -209,12 +209,19 @@ def _find_clearest(paths: FloatArray, time: FloatArray, reaching: Mask) -> Mask:
         carried = NOTICED + ACCELERATION / 8 * lasts**2
         excess = stray - np.maximum(np.maximum(carried[:, None], far), JITTERS * usual)
         excess[lasts > LONGEST_JUMP] = 0.0
-        left, turned = _measure_return(paths, time, net, lasts)
-        carried = NOTICED + RETURN_ACCELERATION / 16 * lasts**2
-        most = np.maximum(np.maximum(carried[:, None], far), np.maximum(turned, JITTERS * usual))
-        returned = np.where(reaching, np.minimum(stray, left) - most, 0.0)
-        returned[lasts > longest] = 0.0
-        excess = np.maximum(excess, returned)
+        far_off = np.flatnonzero(reaching & (stray.max(axis=0) > NOTICED))
+        if len(far_off):
+            left, turned = _measure_return(
+                paths.take(far_off, axis=1), time, net.take(far_off, axis=1), lasts
+            )
+            carried = NOTICED + RETURN_ACCELERATION / 16 * lasts**2
+            most = np.maximum(
+                np.maximum(carried[:, None], far[:, far_off]),
+                np.maximum(turned, JITTERS * usual[far_off]),
+            )
+            returned = np.minimum(stray[:, far_off], left) - most
+            returned[lasts > longest] = 0.0
+            excess[:, far_off] = np.maximum(excess[:, far_off], returned)
         for start, index in np.argwhere(excess > 0).tolist():
             candidates.append((float(excess[start, index]), start, start + length + 1, index))
     touched, off = np.zeros(paths.shape[:2], dtype=bool), np.zeros(paths.shape[:2], dtype=bool)
