@@ -15,7 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 from app.recognition import PoseSequence, Recording
-from app.recognition.explanation.transcript import find_drawing_landmarks
+from app.recognition.explanation.strokes import find_drawing_landmarks
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.trajectory import Trajectory
 

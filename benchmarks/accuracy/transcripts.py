@@ -23,13 +23,8 @@ from pydantic import TypeAdapter
 
 from app.evaluation.proportion import Share
 from app.recognition import Language, PoseSequence
-from app.recognition.explanation.transcript import (
-    DIRECTIONS,
-    Piece,
-    compare_transcripts,
-    describe_strokes,
-    transcribe,
-)
+from app.recognition.explanation.strokes import DIRECTIONS, Piece, transcribe
+from app.recognition.explanation.transcript import compare_transcripts, describe_strokes
 from app.recognition.poses.trajectory import Trajectory
 from benchmarks.accuracy.misreading_pictures import draw_paths
 from benchmarks.accuracy.people import all_sets

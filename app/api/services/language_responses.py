@@ -17,7 +17,8 @@ from app.api.services.demonstration_sources import sources_in
 from app.api.services.language_documents import draft_of
 from app.api.services.running_studio import DocumentCache, Studio
 from app.recognition import Language
-from app.recognition.explanation.transcript import describe_strokes, transcribe_gesture
+from app.recognition.explanation.strokes import transcribe_gesture
+from app.recognition.explanation.transcript import describe_strokes
 from app.recognition.gestures.gesture import Gesture
 from app.recognition.language.file import seal, short_code
 from app.recognition.language.grammar_entry import grammar_to_entry

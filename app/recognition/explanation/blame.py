@@ -21,6 +21,8 @@ from app.recognition.decision.result import WRITTEN
 from app.recognition.errors import OsgError
 from app.recognition.explanation.context import KnownTake, KnownTakes
 from app.recognition.explanation.demonstration_faults import FaultKind
+from app.recognition.explanation.strokes import transcribe_gesture
+from app.recognition.explanation.transcript import are_alike, compare_transcripts
 from app.recognition.explanation.undoing import (
     Comparison,
     compare_with,
@@ -45,6 +47,10 @@ FEWEST_TAKES: Final = 3
 
 MOST_COMPARED_TAKES: Final = 8
 """Most known takes of a gesture that are compared with each other."""
+
+MOST_AGREE: Final = 2 / 3
+"""Least share of a gesture's known takes whose strokes agree, at least two takes, that show which
+strokes the gesture has. With half, one demonstration of 30 is blamed that no reader blames."""
 
 WEIGHT_OF_FAILING: Final = 0.75
 """Weight of `Evidence.failing`; chosen, as the next two, by `benchmarks.accuracy.blame`, which
@@ -105,6 +111,9 @@ class Blame:
         How many known takes are read right with the change only, and without it only.
     evidence
         Against the demonstration.
+    odd
+        How its strokes differ from those in which the takes agree, as a sentence; empty: they do
+        not.
 
     """
 
@@ -120,6 +129,7 @@ class Blame:
     repaired: int
     broken: int
     evidence: Evidence
+    odd: str = ""
 
     @computed_field  # type: ignore[prop-decorator]
     @property
@@ -131,6 +141,8 @@ class Blame:
                 return f"{of} {FaultKind.reaches_salute.told}. Set its range."
             case "leave_out":
                 return f"{of} is unlike its other ones. Leave it out."
+            case _ if self.odd:
+                return self.odd
             case _:
                 effect = f"a take in its place repairs {self.repaired}, breaks {self.broken}"
                 return f"Show the demonstration of {self.label!r} again: {effect}."
@@ -164,16 +176,40 @@ def find_blame(
         if labels is not None and gesture.label not in labels:
             continue
         own = [index for index, take in enumerate(known.takes) if take.label == gesture.label]
-        if len(own) < FEWEST_TAKES:
-            continue
         failing = sum(known.readings[index] != gesture.label for index in own)
-        if failing < max(FEWEST_FAILING, LEAST_FAILING * len(own)):
-            continue
+        fails = failing >= max(FEWEST_FAILING, LEAST_FAILING * len(own))
         for number, shown in enumerate(gesture.single_demonstrations()):
-            if shown.trajectory is not None and not shown.is_held:
-                found += _judge_demonstration(known, gesture, number, own, failing, least)
-    sure = [each for each in found if each.evidence.weigh() >= least]
+            if shown.trajectory is None or shown.is_held:
+                continue
+            # Several demonstrations show several ways; takes that are read need none of these.
+            alone = not gesture.further and (failing or labels is not None)
+            odd = _describe_odd(shown, [known.takes[index] for index in own]) if alone else ""
+            if odd or (fails and len(own) >= FEWEST_TAKES):
+                limit = -math.inf if odd else least
+                judged = _judge_demonstration(known, gesture, number, own, failing, limit)
+                found += [replace(each, odd=odd) for each in judged]
+    sure = [each for each in found if each.odd or each.evidence.weigh() >= least]
     return tuple(sorted(sure, key=lambda each: -each.evidence.weigh()))
+
+
+def _describe_odd(shown: Gesture, takes: Sequence[KnownTake]) -> str:
+    """Return how a demonstration differs from takes that agree with each other; empty: it may not.
+
+    `MOST_AGREE` of the takes agree, and none of these with the demonstration, stroke by stroke.
+    """
+    told = [take.strokes for take in takes if take.strokes]
+    groups = [[each for each in told if are_alike(each, first)] for first in told]
+    most, own = max(groups, key=len, default=[]), transcribe_gesture(shown)
+    if len(most) < max(2, MOST_AGREE * len(takes)) or not own:
+        return ""
+    if any(are_alike(each, own) for each in most):
+        return ""
+    of, some = f"Your demonstration of {shown.label!r}", f"{len(most)} of {len(takes)} takes"
+    if len(own) != len(most[0]):
+        strokes = "one stroke" if len(own) == 1 else f"{len(own)} strokes"
+        return f"{of} has {strokes}; {some} have {len(most[0])}."
+    at = compare_transcripts(own, most[0]).differs or 0
+    return f"{of}: {own[at].words}, where {some} have: {most[0][at].words}."
 
 
 def _judge_demonstration(

@@ -1,7 +1,8 @@
 """Causes: why a take is not read as the gesture that was meant, in one sentence with a remedy.
 
-No cause is guessed. First stands what the keypoints themselves show, then that two gestures of the
-language are alike, then a fault of the demonstration, and last a change of the take that is proven:
+No cause is guessed. First stands what the keypoints themselves show, then a way from or to a salute
+without which the take is read right, then a fault of the demonstration, then that two gestures of
+the language are alike, and last a change of the take that is proven:
 undoing it (`undoing`) removes most of what is too far, no other change half as much, and the
 drawings show it. Without such evidence no cause is named, and the transcript tells what was shown.
 """
@@ -20,9 +21,10 @@ import numpy.typing as npt
 from app.recognition.decision.outcome import is_rejected
 from app.recognition.decision.result import WRITTEN
 from app.recognition.decision.score_table import ScoreTable
-from app.recognition.errors import PoseError
+from app.recognition.errors import OsgError, PoseError
 from app.recognition.explanation.blame import Blame
 from app.recognition.explanation.context import RecognitionContext
+from app.recognition.explanation.cuts import agrees, find_cuts
 from app.recognition.explanation.hand_differences import (
     find_held_difference,
     find_moving_hand_difference,
@@ -31,7 +33,6 @@ from app.recognition.explanation.undoing import Comparison, Undone, Where, compa
 from app.recognition.gestures.gesture import Gesture
 from app.recognition.poses.trajectory import TURNED_AWAY, Trajectory
 from app.recognition.preprocessing.jumps import find_other_body, find_unsteady
-from app.recognition.preprocessing.repair import repair_poses
 from app.recognition.recognizer import Recognizer
 
 EXPLAINED: Final = 0.6
@@ -60,6 +61,9 @@ LEAST_MIXED: Final = 0.2
 ALIKE: Final = 0.75
 """Novelty of one gesture's demonstration for another gesture below which the two are nearly the
 same in this language."""
+
+SINKS_WITHIN: Final = 0.4
+"""Largest width of the way of an arm that sinks, as a share of its height."""
 
 CONFUSED: Final = 2
 """Least known takes of one of two gestures that are read as the other if the two are alike."""
@@ -93,6 +97,8 @@ SENTENCES: Final[Mapping[str, str]] = {
     "begun_late": "The beginning of {label} is missing. Start earlier, or set the range.",
     "ended_early": "The end of {label} is missing. Finish it, or set the range.",
     "part_added": "A movement {where} {label} was added. Leave it out.",
+    "cut": "A way {where} {label} is included. Set its range: {start:.2f}-{end:.2f} s.",
+    "sinks": "The first salute was missed: an arm sinks here. Show both salutes again.",
     "part_missing": "A part of {label} is missing in the middle. Show all of it.",
     "upside_down": "The take shows {label} upside down{also}. Show all of it upright.",
     "other_arm": "The take shows {label} with the other arm{also}. Use the demonstrated one.",
@@ -193,13 +199,22 @@ def find_causes(
     at = recognizer.language.labels.index(expected)
     table = recognizer.compare(context.trace.query)
     gesture = table.find_nearest_demonstration(recognizer.language.gestures, at)
+    if _only_sinks(context) and not agrees(context, expected):
+        return (Cause(kind=CauseKind.not_seen, sentence=SENTENCES["sinks"]),)
     found = list(_list_seen(context, table, gesture))
-    if near := _find_near_gesture(context, table, at, with_known=blame is not None):
-        found.append(near)
+    if cut := _find_cut(context, expected, float(table.novelty[at])):
+        found.append(cut)
     if bad := _find_bad_demonstration(context, table, at, blame or ()):
         found.append(bad)
+    near = _find_near_gesture(context, table, at, with_known=blame is not None)
+    if near and not cut:
+        found.append(near)
     comparison = compare_with(recognizer, context.trace.query, table, at)
-    if comparison is not None and (proven := prove_change(comparison, explained, following)):
+    if (
+        comparison is not None
+        and not cut
+        and (proven := prove_change(comparison, explained, following))
+    ):
         rival = float(np.fmin.reduce(np.delete(table.novelty, at), initial=np.inf))
         if proven.novelty <= rival:
             found.append(_name_change(comparison, proven, expected, float(context.poses.time[0])))
@@ -207,6 +222,42 @@ def find_causes(
         sentence = SENTENCES["not_comparable"].format(label=repr(expected))
         found.append(Cause(kind=CauseKind.not_seen, sentence=sentence))
     return tuple(found)
+
+
+def _only_sinks(context: RecognitionContext) -> bool:
+    """Return whether an open take is the arm that sinks after a salute that was taken as first."""
+    if context.closed or not context.strokes:
+        return False
+    names = [*{each.hand for each in context.strokes}]
+    x, y = np.moveaxis(context.repair.trajectory.select(names).fill_gaps().xy, 2, 0)
+    wide, high = (np.nanmax(each, axis=0) - np.nanmin(each, axis=0) for each in (x, y))
+    sunk = y[-1] - np.nanmin(y, axis=0)
+    return bool((wide < SINKS_WITHIN * high).all() and (sunk > (1 - SINKS_WITHIN / 4) * high).all())
+
+
+def _find_cut(context: RecognitionContext, expected: str, novelty: float) -> Cause | None:
+    """Return a way from or to a salute that is in the take: without it the gesture is nearest.
+
+    It is the first or the last stroke, without which the others are those of the gesture, so that
+    the novelty falls. Of two the one that explains the take better.
+    """
+    at, best, found = context.language.labels.index(expected), novelty, None
+    for cut in find_cuts(context):
+        with suppress(OsgError):
+            without = context.with_poses(cut.poses)
+            now = float(without.score_table.novelty[at])
+            if now < best and without.result.nearest == expected and agrees(without, expected):
+                best, found = now, cut
+    if found is None or agrees(context, expected):
+        return None
+    start, end = float(found.poses.time[0]), float(found.poses.time[-1])
+    words = {"where": WHERE[found.where], "label": repr(expected)}
+    return Cause(
+        kind=CauseKind.part_added,
+        sentence=SENTENCES["cut"].format(**words, start=start, end=end),
+        start=found.stroke.start,
+        end=found.stroke.end,
+    )
 
 
 def _find_bad_demonstration(
@@ -311,7 +362,7 @@ def _list_bad_frames(
     names = [name for name in gesture.salient if name in poses.landmarks]
     if not names or not poses.seen.any():
         return
-    raw, repair = Trajectory.from_poses(poses), repair_poses(poses)
+    raw, repair = Trajectory.from_poses(poses), context.repair
     unseen = np.asarray(~poses.select(names).seen.all(axis=1))
     masks: dict[str, tuple[npt.NDArray[np.bool_], float]] = {
         "keypoints_jumped": (find_unsteady(raw, names), LEAST_JUMPED),

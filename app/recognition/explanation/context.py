@@ -11,11 +11,15 @@ from app.recognition.decision.result import Recognition
 from app.recognition.decision.score_table import ScoreTable, Trace
 from app.recognition.errors import OsgError
 from app.recognition.explanation.demonstration_faults import DemonstrationFault
+from app.recognition.explanation.strokes import Piece, transcribe
+from app.recognition.gestures.demonstration import condense
 from app.recognition.gestures.gesture import Gesture
 from app.recognition.gestures.tuning import Tuning
 from app.recognition.language.language import Language
 from app.recognition.poses.sequence import PoseSequence
 from app.recognition.poses.trajectory import Trajectory
+from app.recognition.preprocessing.repair import Repair, repair_poses
+from app.recognition.preprocessing.salience import find_salient_landmarks
 from app.recognition.recognizer import Recognizer
 from app.recognition.recording.segmentation import Take
 
@@ -38,6 +42,11 @@ class KnownTake:
     label: str
     query: Trajectory
     without: tuple[tuple[str, int], ...] = ()
+
+    @cached_property
+    def strokes(self) -> tuple[Piece, ...]:
+        """The transcript of the take."""
+        return transcribe(self.query, find_salient_landmarks(self.query))
 
     def after_leaving_out(self, left_out: tuple[str, int]) -> KnownTake:
         """Return the take in the language that lacks one more demonstration."""
@@ -159,6 +168,24 @@ class RecognitionContext:
 
         """
         return self.recognizer.examine(self.poses)
+
+    @cached_property
+    def strokes(self) -> tuple[Piece, ...]:
+        """The transcript of the take, whatever it is compared with; it follows repaired paths."""
+        moved = condense(self.repair.trajectory)
+        return transcribe(moved, find_salient_landmarks(moved), float(self.poses.time[0]))
+
+    @property
+    def bridged(self) -> tuple[float, ...]:
+        """The seconds of the frames in which a hand of `strokes` jumped, so that it is bridged."""
+        hands = {each.hand for each in self.strokes} & {*self.poses.landmarks}
+        columns = [self.poses.landmarks.index(hand) for hand in sorted(hands)]
+        return tuple(self.poses.time[self.repair.jumps[:, columns].any(axis=1)].tolist())
+
+    @cached_property
+    def repair(self) -> Repair:
+        """The repaired poses of the take."""
+        return repair_poses(self.poses)
 
     @cached_property
     def known_takes(self) -> KnownTakes:

@@ -21,11 +21,14 @@ from app.recognition.decision.result import Distance
 from app.recognition.errors import OsgError
 from app.recognition.explanation.blame import Blame
 from app.recognition.explanation.context import KnownTake, KnownTakes, RecognitionContext
+from app.recognition.explanation.cuts import find_cuts
+from app.recognition.explanation.strokes import transcribe_gesture
 from app.recognition.explanation.undoing import compare_with, find_better_range
+from app.recognition.features.motion import parse_body_part
 from app.recognition.gestures.demonstration import MAX_DEMONSTRATIONS
+from app.recognition.gestures.gesture import Gesture
 from app.recognition.gestures.switches import Switch
 from app.recognition.gestures.tuning import describe_repair
-from app.recognition.preprocessing.repair import repair_poses
 from app.recognition.text.wording import humanize
 
 TRIM_STEP = 0.1
@@ -291,7 +294,7 @@ def list_interventions(
     """
     yield list(_cuts(context, expected, blame, faulty=faulty))
     yield from _trims(context)
-    repaired = float(repair_poses(context.poses).touched.mean())
+    repaired = float(context.repair.touched.mean())
     if repaired > 0:
         yield [Intervention("keypoint_repair", repaired, {"on": not context.recognizer.repairs})]
     yield from _gestures(context, expected)
@@ -321,7 +324,9 @@ def _trims(context: RecognitionContext) -> Iterator[list[Intervention]]:
     )
     steps = np.arange(1, TRIM_STEPS + 1) * TRIM_STEP * (end - start)
     ways = ((1, 0), (0, -1), (1, -1), (-1, 0), (0, 1))
+    cuts = [(each.poses.time[0], each.poses.time[-1]) for each in find_cuts(context)]
     for spans in (
+        cuts,
         *([(start + a * by, end + b * by) for by in steps] for a, b in ways),
         [(first, last)],
     ):
@@ -333,7 +338,7 @@ def _trims(context: RecognitionContext) -> Iterator[list[Intervention]]:
                 {"start": a, "end": b, "longer": bool(a < start or b > end)},
             )
             for a, b in inside
-            if min(b, end) - max(a, start) >= LEAST_KEPT * (end - start) - 1e-9 > 0
+            if spans is cuts or min(b, end) - max(a, start) >= LEAST_KEPT * (end - start) - 1e-9 > 0
         ]
 
 
@@ -349,12 +354,21 @@ def _gestures(context: RecognitionContext, expected: str) -> Iterator[list[Inter
         yield [Intervention("further_demonstration", 1 / (len(shown) + 1), values)]
 
 
+def _with_other_arm(context: RecognitionContext, gesture: Gesture) -> bool:
+    """Return whether no arm that draws a gesture draws in the take."""
+    here, there = (
+        {parse_body_part(each.hand).partition("_")[0] for each in strokes}
+        for strokes in (context.strokes, transcribe_gesture(gesture))
+    )
+    return here.isdisjoint(there)
+
+
 def _switches(
     context: RecognitionContext, label: str, *, expected: bool
 ) -> Iterator[list[Intervention]]:
     """Relax the switches of the expected gesture, and tighten those of the recognised one.
 
-    Only switches that affect this recognition: direction, tempo, mirror image or hand shape.
+    Only switches of what is in the take: its direction, tempo, other arm or hand shape.
     """
     table, at = context.score_table, context.language.labels.index(label)
     gesture, counting = context.language.gesture(label), context.recognizer.sensitivity(label)
@@ -366,7 +380,10 @@ def _switches(
     positions: dict[str, tuple[Switch, bool]] = {
         "direction": (strict, traversal is not None and traversal.backward != expected),
         "tempo": (strict, bool(slower)),
-        "mirror": ("on" if expected else "off", bool(table.mirrored[at]) != expected),
+        "mirror": (
+            "on" if expected else "off",
+            _with_other_arm(context, gesture) if expected else bool(table.mirrored[at]),
+        ),
         "hand_shape": (strict, shaped and shape_counts == expected),
     }
     for switch, (position, matters) in positions.items():

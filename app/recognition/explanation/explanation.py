@@ -20,18 +20,24 @@ from app.recognition.explanation.counterfactuals import (
     Counterfactual,
     find_counterfactuals,
 )
+from app.recognition.explanation.strokes import transcribe_gesture
 from app.recognition.explanation.transcript import (
+    Line,
     Transcript,
+    Words,
     compare_transcripts,
-    describe_transcript,
-    transcribe,
-    transcribe_gesture,
+    say_line,
+    tell_transcript,
 )
 from app.recognition.explanation.vote_breakdown import VoterBreakdown, break_down_votes
 from app.recognition.features.traversals import AS_SHOWN
+from app.recognition.text.wording import list_some
 
 UNFOLLOWED: Final = {CauseKind.keypoints_jumped, CauseKind.other_person, CauseKind.not_seen}
 """Causes for which neither the strokes nor the turn of the diver are those that were shown."""
+
+MOST_TIMES: Final = 4
+"""Frames that the numbers name by their time."""
 
 CLEARLY_TURNED: Final = 15.0
 """Least degrees by which a diver is turned that the numbers tell."""
@@ -141,13 +147,31 @@ class Explanation(BaseModel):
         """The cause and what the diver can do; without a cause what was shown and expected."""
         if self.right:
             return f"Read as {self.expected!r}, as expected."
-        if self.causes:
-            return self.causes[0].sentence
-        told = describe_transcript(self.transcript, self.expected)
+        return self.causes[0].sentence if self.causes else self._say_strokes()
+
+    @computed_field  # type: ignore[prop-decorator]
+    @property
+    def strokes(self) -> tuple[Line, ...]:
+        """What was shown and what was expected, a line each; empty where it tells nothing.
+
+        Without a cause they are the sentence. Beside a cause they are told where they differ, and
+        where the take's could be followed.
+        """
+        known = self.transcript.shown and self.transcript.differs is not None
+        if self.right or (self.causes and not (known and self._is_followed)):
+            return ()
+        lines = tell_transcript(self.transcript, self.expected)
         if self.transcript.differs is None and self.pair and self.expected in self.pair:
             other = self.pair[self.pair[0] == self.expected]
-            told = f"{told} {other!r} is about as near."
-        return told
+            return (*lines, (Words(text=f"{other!r} is about as near"),))
+        return lines
+
+    @property
+    def _is_followed(self) -> bool:
+        return UNFOLLOWED.isdisjoint(each.kind for each in self.causes)
+
+    def _say_strokes(self) -> str:
+        return " ".join(f"{say_line(line)}." for line in self.strokes)
 
     @computed_field  # type: ignore[prop-decorator]
     @property
@@ -177,12 +201,13 @@ class Explanation(BaseModel):
                 f"Of {first.takes} known takes the change repairs {first.repaired} and breaks "
                 f"{first.broken}."
             )
-        followed = UNFOLLOWED.isdisjoint(each.kind for each in self.causes)
-        differs = self.transcript.shown and self.transcript.differs is not None
-        if self.causes and followed and differs:
-            yield describe_transcript(self.transcript, self.expected)
+        if self.causes and self.strokes:
+            yield self._say_strokes()
+        if jumped := self.transcript.bridged:
+            times = list_some([f"{each:.2f}" for each in jumped], MOST_TIMES)
+            yield f"A hand jumped in {len(jumped)} frames, at {times} s; its path is bridged there."
         yield from (f"Also: {each.sentence}" for each in self.causes[1:3])
-        if followed and self.facing is not None and abs(self.facing) >= CLEARLY_TURNED:
+        if self._is_followed and self.facing is not None and abs(self.facing) >= CLEARLY_TURNED:
             side = "left" if self.facing > 0 else "right"
             yield f"The diver is turned {abs(self.facing):.0f} degrees to their {side}."
         yield f"Confidence in {self.nearest!r}: {self.confidence:.0%}."
@@ -222,7 +247,6 @@ def explain(
     at = result.gestures.index(expected)
     rival = result.nearest if result.nearest != expected else result.runner_up
     other = None if rival is None else result.gestures.index(rival)
-    gesture = table.find_nearest_demonstration(context.language.gestures, at)
     blame: tuple[Blame, ...] = ()
     if wanted := with_counterfactuals and result.label != expected:
         full = context.full_recognizer
@@ -238,6 +262,7 @@ def explain(
     turned = 0.0
     if other is not None and np.isfinite(table.scores[[at, other]]).all():
         turned = float(table.turned[at] - table.turned[other])
+    demonstrations = context.language.gestures[at].single_demonstrations()
     answered = ("profile", "label", "nearest", "runner_up", "confidence", "between", "disagreed")
     return Explanation(
         **{name: getattr(result, name) for name in (*answered, "fault", "support")},
@@ -258,9 +283,10 @@ def explain(
         causes=causes,
         blame=blame,
         transcript=compare_transcripts(
-            transcribe(context.trajectory, gesture.salient, float(context.poses.time[0])),
-            transcribe_gesture(gesture),
+            context.strokes,
+            transcribe_gesture(demonstrations[table.nearest_demonstration(at)]),
             table.traversals[at] or AS_SHOWN,
+            context.bridged,
         ),
         counterfactuals=found,
         tried=tried,

@@ -6,12 +6,8 @@ from dataclasses import dataclass
 
 from app.recognition.explanation.alignment import Alignment, align
 from app.recognition.explanation.causes import prove_change, tell_change
-from app.recognition.explanation.transcript import (
-    Piece,
-    compare_transcripts,
-    transcribe,
-    transcribe_gesture,
-)
+from app.recognition.explanation.strokes import Piece, transcribe_gesture
+from app.recognition.explanation.transcript import compare_transcripts
 from app.recognition.explanation.undoing import compare_with
 from app.recognition.gestures.demonstration import condense
 from app.recognition.recognizer import Recognizer
@@ -67,16 +63,20 @@ def compare_pair(recognizer: Recognizer, one: int, other: int) -> PairDifference
     alignment = align(query, against, landmarks, traversal, mirrored=mirrored)
     if alignment is None:
         return None
-    expected = transcribe_gesture(against)
-    strokes = compare_transcripts(transcribe(query, shown.salient), expected, traversal)
+    theirs = recognizer.language.gestures[other].single_demonstrations()
+    expected = transcribe_gesture(theirs[compared.nearest_demonstration(other)])
+    strokes = compare_transcripts(transcribe_gesture(shown), expected, traversal)
     words, span = f"it has the strokes of {against.label!r}", (0.0, float(query.time[-1]))
     if strokes.differs is not None:
-        ours, theirs = (
-            row[strokes.differs] if strokes.differs < len(row) else None
-            for row in (strokes.shown, strokes.expected)
+        mine, yours = (
+            row[at] if at is not None and at < len(row) else None
+            for row, at in (
+                (strokes.shown, strokes.differs),
+                (strokes.expected, strokes.differs_in_expected),
+            )
         )
-        words = f"it {describe_act(ours)} where {against.label!r} {describe_act(theirs)}"
-        span = (ours.start, ours.end) if ours else (strokes.shown[-1].end, strokes.shown[-1].end)
+        words = f"it {describe_act(mine)} where {against.label!r} {describe_act(yours)}"
+        span = (mine.start, mine.end) if mine else (strokes.shown[-1].end, strokes.shown[-1].end)
     if proven := prove_change(comparison):
         told = tell_change(proven, against.label).partition(". ")[0]
         words = (

@@ -1,166 +1,23 @@
-"""Transcripts: the strokes of a movement in words, such as "down right, up right, left".
+"""Transcripts: the strokes of a take and of the gesture that was expected, compared and told.
 
-The path of each moving hand is split where the hand stops or turns sharply, as the trimming splits
-it, and where its curve changes its sense. A piece is a straight line in one of eight directions,
-an arc or a loop with its sense, or, if it is not clearly one of these, "a curve". Directions are
-those of the picture.
+A recording has one transcript, whatever it is compared with. What is told is chosen here; the page
+draws it.
 """
 
 from __future__ import annotations
 
 import itertools
-import math
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
-from functools import lru_cache
-from typing import Final, Literal
-
-import numpy as np
-from pydantic import computed_field
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Final
 
 from app.recognition.decision.result import WRITTEN
+from app.recognition.explanation.strokes import Piece
 from app.recognition.features.motion import STEPS, parse_body_part
 from app.recognition.features.traversals import AS_SHOWN, Traversal
-from app.recognition.gestures.gesture import Gesture
-from app.recognition.poses.landmarks import TORSO
-from app.recognition.poses.sequence import FloatArray
-from app.recognition.poses.trajectory import Trajectory
-from app.recognition.recording.trimming import (
-    GRID_STEP,
-    Motion,
-    measure_extent,
-    measure_motion,
-    split_pieces,
-)
-
-DIRECTIONS: Final = (
-    "right",
-    "down right",
-    "down",
-    "down left",
-    "left",
-    "up left",
-    "up",
-    "up right",
-)
-"""Directions in steps of an eighth of a turn, from the x axis, x to the right, y down."""
-
-MOST_MOMENTS: Final = 2400
-"""Most moments at which a path is followed: 40 s."""
-
-STEP: Final = 1 / 48
-"""Step along a path at which it is followed, as a share of the diagonal of its extent."""
-
-SHORTEST: Final = 6
-"""Least steps of a piece, an eighth of the extent: less is a wiggle."""
-
-CORNER: Final = math.radians(60)
-"""Least turn within `BEND` steps that is a corner."""
-
-BEND: Final = 5
-
-REVERSAL: Final = math.radians(50)
-"""Least turn back by which a curve changes its sense."""
-
-STRAIGHT: Final = math.radians(55)
-"""Largest turn of a straight line."""
-
-DIRECT: Final = 0.9
-"""Least ratio of distance to path of a straight line."""
-
-NEARLY: Final = 0.95
-"""Least such ratio of a straight line whose ends are bent, by a rounded corner."""
-
-LOOP: Final = math.radians(270)
-"""Least turn of a loop."""
-
-CLOSED: Final = 0.3
-"""Largest ratio of distance to path of a loop that does not turn so far."""
-
-VAGUE: Final = 0.5
-"""Ratio of distance to path below which a curve leads nowhere."""
 
 MOST_TOLD: Final = 7
-"""Most pieces that a sentence tells of a movement, unless it first differs later; as many stand
-before the fold of the page (`why.js`)."""
-
-PAUSE_SECONDS: Final = 0.5
-"""Shortest pause that is told."""
-
-OTHER_HAND: Final = 0.4
-"""Least extent of a hand's path, as a share of the larger one, that counts as moving too."""
-
-LEAST_MOVING: Final = 0.15
-"""Least extent of a movement in torso lengths: 8 cm; a held hand drifts less."""
-
-PieceKind = Literal["line", "arc", "loop", "curve", "pause"]
-
-
-@dataclass(frozen=True, kw_only=True)
-class Piece:
-    """One stroke of a hand.
-
-    Attributes
-    ----------
-    kind
-        What it is.
-    hand
-        The landmark that draws it.
-    direction
-        Degrees from its start to its end, 0 to the right, 90 down; None of loops, pauses, and
-        curves that end near their start.
-    turn
-        Degrees that it turns, positive: clockwise in the picture; 0 of lines and pauses.
-    start, end
-        Seconds.
-
-    """
-
-    __pydantic_config__ = WRITTEN
-
-    kind: PieceKind
-    hand: str
-    direction: float | None
-    turn: float
-    start: float
-    end: float
-
-    @computed_field  # type: ignore[prop-decorator]
-    @property
-    def words(self) -> str:
-        """The piece in words."""
-        sense = "clockwise" if self.turn > 0 else "anticlockwise"
-        match self.kind:
-            case "line":
-                return self._way
-            case "arc":
-                return f"{sense} arc {self._way}"
-            case "loop":
-                turns = max(1, round(abs(self.turn) / 360))
-                return f"{sense} loop" if turns == 1 else f"{turns} {sense} loops"
-            case "curve":
-                return "a curve" if self.direction is None else f"a curve {self._way}"
-            case _:
-                return "a pause"
-
-    @property
-    def _way(self) -> str:
-        assert self.direction is not None
-        return DIRECTIONS[round(self.direction / 45) % 8]
-
-    def differs(self, other: Piece) -> bool:
-        """Return whether two pieces are clearly not the same stroke."""
-        if "curve" in (self.kind, other.kind):
-            return "pause" in (self.kind, other.kind)
-        if self.kind != other.kind and not {self.kind, other.kind} <= {"line", "arc"}:
-            return {self.kind, other.kind} != {"arc", "loop"} or self.turn * other.turn < 0
-        if self.kind == "loop":
-            return self.turn * other.turn < 0 or round(self.turn / 360) != round(other.turn / 360)
-        if self.direction is None or other.direction is None:
-            return False
-        octants = round(self.direction / 45) - round(other.direction / 45)
-        bent = self.kind == other.kind == "arc" and self.turn * other.turn < 0
-        return bent or 2 <= octants % 8 <= 6
+"""Most pieces that a sentence tells of a movement, unless it first differs later."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -171,9 +28,12 @@ class Transcript:
     ----------
     shown, expected
         The pieces of both, hand after hand, in seconds of the take's and of the demonstration's
-        clock.
-    differs
-        Index of the first piece that differs, in both; None where none does.
+        clock, each from where its hand begins.
+    differs, differs_in_expected
+        Indices of the first piece that differs, one past the last where one of both ends before;
+        None where none does.
+    bridged
+        Seconds of the take at which a hand jumped, so that its path is a straight line there.
 
     """
 
@@ -182,64 +42,52 @@ class Transcript:
     shown: tuple[Piece, ...]
     expected: tuple[Piece, ...]
     differs: int | None
+    differs_in_expected: int | None
+    bridged: tuple[float, ...] = ()
 
 
-def transcribe(
-    trajectory: Trajectory, salient: Sequence[str] = (), start: float = 0.0
-) -> tuple[Piece, ...]:
-    """Return the strokes of a movement.
+@dataclass(frozen=True, kw_only=True)
+class Words:
+    """Words of a line that tells strokes.
 
-    Parameters
+    Attributes
     ----------
-    trajectory
-        The movement.
-    salient
-        The landmarks among which the drawing hands are sought; all when not given.
+    text
+        The words, with what separates them from those before.
     start
-        Second of the clock at which it begins.
-
-    Returns
-    -------
-    The pieces in their order, one hand after the other; empty where nothing moves. Scale, place and
-    clock change nothing but the times.
+        Second of the take at which the stroke begins; None for other words.
+    differs
+        Whether it is the first stroke that differs.
+    bridged
+        Whether the hand jumped meanwhile, so that a part of the stroke is not seen.
+    folded
+        Strokes behind a fold, of which `text` tells the number.
 
     """
-    drawing = find_drawing_landmarks(trajectory, salient)
-    return tuple(piece for name in drawing for piece in _follow(trajectory, name, start))
+
+    __pydantic_config__ = WRITTEN
+
+    text: str
+    start: float | None = None
+    differs: bool = False
+    bridged: bool = False
+    folded: tuple[Words, ...] = ()
 
 
-@lru_cache(1024)
-def transcribe_gesture(gesture: Gesture) -> tuple[Piece, ...]:
-    """Return the strokes of a gesture's first demonstration; empty for held hand shapes."""
-    if gesture.is_held or gesture.trajectory is None or len(gesture.trajectory) < 2:
-        return ()
-    return transcribe(gesture.trajectory, gesture.salient)
+Line = tuple[Words, ...]
 
 
-def describe_strokes(
-    pieces: Sequence[Piece], most: int | None = None, *, named: bool = False
-) -> str:
-    """Return strokes in words; of two hands, one after the other, and at most so many of each.
-
-    `named` is whether the hand is named where there is one only.
-    """
-    rows: dict[str, list[str]] = {}
-    for each in pieces:
-        rows.setdefault(each.hand, []).append(each.words)
-    words = [", ".join(row[:most]) for row in rows.values()]
-    for index, row in enumerate(rows.values()):
-        if most is not None and len(row) > most:
-            words[index] += f", then {len(row) - most} more"
-    if len(words) < 2 and not named:
-        return "".join(words)
-    if len(words) > len(set(words)) == 1:
-        return f"both hands {words[0]}"
-    sides = [parse_body_part(hand).partition("_")[0] for hand in rows]
-    return "; ".join(f"{side} hand {each}" for side, each in zip(sides, words, strict=True))
+def describe_strokes(pieces: Sequence[Piece]) -> str:
+    """Return strokes in words; of two hands, one after the other."""
+    named = len(_group_by_hand(pieces)) > 1
+    return say_line(_tell_strokes(pieces, named=named, most=2 * len(pieces)))
 
 
 def compare_transcripts(
-    shown: Sequence[Piece], expected: Sequence[Piece], traversal: Traversal = AS_SHOWN
+    shown: Sequence[Piece],
+    expected: Sequence[Piece],
+    traversal: Traversal = AS_SHOWN,
+    bridged: Sequence[float] = (),
 ) -> Transcript:
     """Compare the strokes of a take with those of a gesture.
 
@@ -249,15 +97,28 @@ def compare_transcripts(
         Strokes of the take and of the gesture.
     traversal
         The one in which the gesture is nearest to the take: a closed one may begin at any stroke.
+    bridged
+        See `Transcript`.
 
     """
-    turned = [tuple(expected)]
-    if traversal.order[0] not in (0, STEPS - 1) and len({each.hand for each in expected}) == 1:
-        turned = [(*expected[at:], *expected[:at]) for at in range(len(expected))]
-    best = max(turned or [()], key=lambda each: _count_alike(shown, each))
-    alike = _count_alike(shown, best)
-    whole = alike == len(shown) == len(best)
-    return Transcript(shown=tuple(shown), expected=best, differs=None if whole else alike)
+    starts = [0]
+    if traversal.order[0] not in (0, STEPS - 1) and len(_group_by_hand(expected)) == 1:
+        starts = [*range(len(expected))]
+    alike, back = max((_count_alike(shown, (*expected[at:], *expected[:at])), -at) for at in starts)
+    whole = alike == len(shown) == len(expected)
+    meets = len(expected) if alike == len(expected) else (alike - back) % max(1, len(expected))
+    return Transcript(
+        shown=tuple(shown),
+        expected=tuple(expected),
+        differs=None if whole else alike,
+        differs_in_expected=None if whole else meets,
+        bridged=tuple(bridged),
+    )
+
+
+def are_alike(one: Sequence[Piece], other: Sequence[Piece]) -> bool:
+    """Return whether two movements have the same strokes, as many and none that differs."""
+    return _count_alike(one, other) == len(one) == len(other)
 
 
 def _count_alike(shown: Sequence[Piece], expected: Sequence[Piece]) -> int:
@@ -266,196 +127,77 @@ def _count_alike(shown: Sequence[Piece], expected: Sequence[Piece]) -> int:
     return len([*itertools.takewhile(lambda pair: not pair[0].differs(pair[1]), pairs)])
 
 
-def find_drawing_landmarks(trajectory: Trajectory, salient: Sequence[str] = ()) -> tuple[str, ...]:
-    """Return the landmarks that draw: of each moving arm its wrist, or what moves most."""
-    parts = {name: parse_body_part(name) for name in trajectory.landmarks}
-    names = [name for name in salient or parts if name in parts and name != TORSO]
-    arms = {parts[name].partition("_")[0] for name in names}
-    wrists = [
-        name
-        for name, part in parts.items()
-        if part.endswith("wrist") and part.partition("_")[0] in arms
-    ]
-    paths = dict(zip(trajectory.landmarks, np.moveaxis(trajectory.xy, 1, 0), strict=True))
-    extents = {name: measure_extent(paths[name]) for name in wrists or names}
-    most = max(extents.values(), default=0.0)
-    least = OTHER_HAND * most if wrists else most
-    return tuple(name for name in extents if extents[name] >= least and most > LEAST_MOVING)
+def _group_by_hand(pieces: Sequence[Piece]) -> dict[str, list[Piece]]:
+    rows: dict[str, list[Piece]] = {}
+    for piece in pieces:
+        rows.setdefault(piece.hand, []).append(piece)
+    return rows
 
 
-def _follow(trajectory: Trajectory, name: str, start: float) -> list[Piece]:
-    """Return the pieces of one landmark's path."""
-    count = min(MOST_MOMENTS, math.ceil(float(trajectory.time[-1]) / GRID_STEP) + 1)
-    even = trajectory.select([name]).resample_in_time(max(count, 16))
-    # In extents, so that a small movement is split as a large one.
-    path = even.xy[:, 0] / max(measure_extent(even.xy[:, 0]), 1e-12)
-    motion = measure_motion([path], even.time)
-    parts = [] if motion is None else _list_runs(motion)
-    found: list[Piece] = []
-    for part in [part for part in parts if len(part.xy) > SHORTEST] or parts[:1]:
-        here = part.name(name, start)
-        before = found[-1] if found else here
-        if here.start - before.end >= PAUSE_SECONDS:
-            pause = replace(here, kind="pause", direction=None, turn=0.0)
-            found.append(replace(pause, start=before.end, end=here.start))
-        elif found and before.kind == here.kind == "line" and before.words == here.words:
-            here = replace(here, start=found.pop().start)
-        found.append(here)
-    return found
-
-
-def _list_runs(motion: Motion) -> list[_Run]:
-    """Return the pieces of a path between its corners and changes of sense; loops stay whole."""
-    pieces = [slice(piece.first, piece.last + 1) for piece in split_pieces(motion)]
-    runs = [_Run.of(motion.xy[each], motion.time[each]) for each in pieces]
-    whole = _join([run for run in runs if run is not None], _Run.continues)
-    return _join([part for run in whole for part in run.split()], _Run.closes)
-
-
-def _join(runs: Sequence[_Run], belongs: Callable[[_Run, _Run], bool]) -> list[_Run]:
-    """Join each run with the one before it where it belongs to that one."""
-    found: list[_Run] = []
-    for run in runs:
-        found.append(found.pop().join(run) if found and belongs(run, found[-1]) else run)
-    return found
-
-
-@dataclass(frozen=True, eq=False)
-class _Run:
-    """A path at equal steps ``(N, 2)`` and the seconds ``(N,)`` at which each was reached."""
-
-    xy: FloatArray
-    time: FloatArray
-
-    @classmethod
-    def of(cls, xy: FloatArray, time: FloatArray) -> _Run | None:
-        """Follow a path at steps of `STEP`; None where it is shorter than one."""
-        way = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(xy, axis=0), axis=1))])
-        if way[-1] < STEP:
-            return None
-        even = np.linspace(0, way[-1], round(way[-1] / STEP) + 1)
-        at = [np.interp(even, way, column) for column in (*xy.T, time)]
-        return cls(np.stack(at[:2], axis=1), at[2])
-
-    @property
-    def headings(self) -> FloatArray:
-        """``(N - 1,)`` radians of each step, without jumps by a full turn."""
-        steps = np.diff(self.xy, axis=0)
-        return np.unwrap(np.arctan2(steps[:, 1], steps[:, 0]))
-
-    def continues(self, before: _Run) -> bool:
-        """Return whether this run goes on where, when and as another one ended: no corner."""
-        last, first = before.headings[-BEND:], self.headings[:BEND]
-        turn = (float(first.mean() - last.mean()) + math.pi) % (2 * math.pi) - math.pi
-        return abs(turn) < CORNER and self.time[0] - before.time[-1] < PAUSE_SECONDS
-
-    def closes(self, before: _Run) -> bool:
-        """Return whether this run and the one before it are the two halves of a loop."""
-        bent = all(STRAIGHT <= abs(run.turn) < LOOP for run in (before, self))
-        follows = self.time[0] - before.time[-1] < PAUSE_SECONDS
-        whole = before.join(self)
-        return bent and follows and abs(whole.turn) >= LOOP and whole.direct < CLOSED
-
-    @property
-    def turn(self) -> float:
-        """Radians that it turns, positive: clockwise."""
-        headings = self.headings
-        return float(headings[-2:].mean() - headings[:2].mean()) if len(headings) > 3 else 0.0
-
-    @property
-    def direct(self) -> float:
-        """Distance from its start to its end over its length."""
-        way = float(np.linalg.norm(np.diff(self.xy, axis=0), axis=1).sum())
-        return float(np.linalg.norm(self.xy[-1] - self.xy[0])) / max(way, 1e-12)
-
-    def join(self, after: _Run) -> _Run:
-        """Return both as one."""
-        return _Run(np.concatenate([self.xy, after.xy]), np.concatenate([self.time, after.time]))
-
-    def between(self, first: int, last: int) -> _Run:
-        """Keep the steps from first to last."""
-        return _Run(self.xy[first : last + 1], self.time[first : last + 1])
-
-    def split(self) -> list[_Run]:
-        """Split at corners, and where the curve turns the other way."""
-        cuts = [0, *self._find_corners(), len(self.xy) - 1]
-        parts = [self.between(a, b) for a, b in itertools.pairwise(cuts)]
-        return [bent for part in parts for bent in part._split_bends()]
-
-    def _find_corners(self) -> list[int]:
-        """Return the points at which the path turns by `CORNER` within `BEND` steps."""
-        headings = self.headings
-        if len(headings) <= 2 * BEND:
-            return []
-        # The direction after a point, over as many steps, minus that before it.
-        window = np.convolve(headings, np.ones(BEND) / BEND, mode="valid")
-        turns = np.abs(window[BEND:] - window[:-BEND])
-        corners = []
-        while turns.max(initial=0.0) >= CORNER:
-            at = int(turns.argmax())
-            corners.append(at + BEND)
-            turns[max(0, at - 2 * BEND + 1) : at + 2 * BEND] = 0
-        return sorted(corners)
-
-    def _split_bends(self) -> list[_Run]:
-        """Split where the sense of the curve changes by more than `REVERSAL`."""
-        headings = self.headings.tolist()
-        cuts, sense, farthest = [0], 0, {-1: 0, 1: 0}
-        for at, heading in enumerate(headings):
-            for way in (-1, 1):
-                back = way * (headings[farthest[way]] - heading)
-                if back < 0:
-                    farthest[way] = at
-                elif back > REVERSAL and sense != -way:
-                    cuts += [farthest[way]] * (sense == way)
-                    sense, farthest = -way, {-1: at, 1: at}
-        cuts.append(len(self.xy) - 1)
-        return [self.between(a, b) for a, b in itertools.pairwise(cuts) if b > a]
-
-    def name(self, hand: str, start: float) -> Piece:
-        """Return the run as a piece."""
-        turn, chord = self.turn, self.xy[-1] - self.xy[0]
-        turns = np.diff(self.headings)
-        is_one_way = abs(turns.sum()) >= 0.6 * np.abs(turns).sum()
-        is_bent = abs(turn) >= STRAIGHT and is_one_way
-        kind: PieceKind = "curve"
-        if abs(turn) >= LOOP or (is_bent and self.direct < CLOSED):
-            kind = "loop"
-        elif self.direct >= (DIRECT if abs(turn) < STRAIGHT else NEARLY):
-            kind = "line"
-        elif is_bent:
-            kind = "arc"
-        vague = kind == "loop" or (kind == "curve" and self.direct < VAGUE)
-        return Piece(
-            kind=kind,
-            hand=hand,
-            direction=None if vague else math.degrees(math.atan2(chord[1], chord[0])),
-            turn=0.0 if kind == "line" else math.degrees(turn),
-            start=start + float(self.time[0]),
-            end=start + float(self.time[-1]),
-        )
-
-
-def describe_transcript(transcript: Transcript, label: str) -> str:
-    """Return what was shown and what was expected, in one sentence."""
-    hands = {each.hand for each in (*transcript.shown, *transcript.expected)}
-    shown, expected = (
-        _say(pieces, transcript.differs, named=len(hands) > 1)
-        for pieces in (transcript.shown, transcript.expected)
+def tell_transcript(transcript: Transcript, label: str) -> tuple[Line, ...]:
+    """Return what was shown and what was expected, a line each."""
+    shown, expected, differs = transcript.shown, transcript.expected, transcript.differs
+    named = len(_group_by_hand((*shown, *expected))) > 1
+    told = _tell_strokes(shown, differs, named=named, bridged=transcript.bridged)
+    if shown and expected and differs is None:
+        return ((Words(text=f"You showed the strokes of {label!r}: "), *told),)
+    first = (Words(text="You showed: "), *told)
+    second = _tell_strokes(expected, transcript.differs_in_expected, named=named)
+    return (
+        first if shown else (Words(text="No movement of a hand was seen"),),
+        (Words(text=f"{label!r}: "), *second)
+        if expected
+        else (Words(text=f"{label!r} is a held hand shape"),),
     )
-    if not transcript.shown:
-        return f"No movement of a hand was seen. {label!r} is: {expected}."
-    if not transcript.expected:
-        return f"You showed: {shown}. {label!r} is a held hand shape."
-    if transcript.differs is None:
-        return f"You showed the strokes of {label!r}: {shown}."
-    return f"You showed: {shown}. {label!r}: {expected}."
 
 
-def _say(pieces: Sequence[Piece], differs: int | None, *, named: bool) -> str:
-    """Return at most `MOST_TOLD` strokes in words, and always the first that differs."""
-    hands = [each.hand for each in pieces]
-    most = MOST_TOLD // max(1, len(set(hands)))
-    if differs is not None and differs < len(hands):
-        most = max(most, differs + 1 - hands.index(hands[differs]))
-    return describe_strokes(pieces, most, named=named) or "no stroke"
+def say_line(line: Line) -> str:
+    """Return a line in words."""
+    return "".join(each.text for each in line)
+
+
+def _tell_strokes(
+    pieces: Sequence[Piece],
+    differs: int | None = None,
+    *,
+    named: bool,
+    bridged: Sequence[float] | None = None,
+    most: int = MOST_TOLD,
+) -> Line:
+    """Tell strokes, hand after hand; at most `most` before the fold, and the first that differs.
+
+    `bridged` is given for a take, see `Transcript`.
+    """
+    marked = pieces[differs] if differs is not None and differs < len(pieces) else None
+    sides = {
+        f"{parse_body_part(hand).partition('_')[0]} hand ": row
+        for hand, row in _group_by_hand(pieces).items()
+    }
+    rows = list(sides.items())
+    if len(rows) == 2 and not marked:
+        one, other = ([piece.words for piece in row] for row in sides.values())
+        rows = [("both hands ", rows[0][1])] if one == other else rows
+    line: list[Words] = []
+    for name, row in rows:
+        line += [Words(text="; ")] if line else []
+        line += [Words(text=name)] if named else []
+        until = most // len(rows)
+        if marked in row:
+            until = max(until, row.index(marked) + 1)
+        told = [
+            (
+                *([Words(text=", ")] if index else []),
+                Words(
+                    text=piece.words,
+                    start=None if bridged is None else piece.start,
+                    differs=piece is marked,
+                    bridged=any(piece.start <= each <= piece.end for each in bridged or ()),
+                ),
+            )
+            for index, piece in enumerate(row)
+        ]
+        line += itertools.chain(*told[:until])
+        if folded := told[until:]:
+            behind = tuple(itertools.chain(*folded))
+            line.append(Words(text=f", then {len(folded)} more", folded=behind))
+    return (*line, Words(text=" (ends)", differs=True)) if differs == len(pieces) else tuple(line)

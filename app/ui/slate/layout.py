@@ -11,7 +11,8 @@ import cv2
 import numpy as np
 
 from app.recognition import Gesture, Language
-from app.recognition.explanation.transcript import describe_strokes, transcribe_gesture
+from app.recognition.explanation.strokes import transcribe_gesture
+from app.recognition.explanation.transcript import describe_strokes
 from app.recognition.features.hand_image import PlacedHands, place_hands
 from app.recognition.features.trajectory_image import SIZE
 from app.recognition.language.file import seal, short_code

@@ -1405,6 +1405,9 @@ export interface components {
          *         How many known takes are read right with the change only, and without it only.
          *     evidence
          *         Against the demonstration.
+         *     odd
+         *         How its strokes differ from those in which the takes agree, as a sentence; empty: they do
+         *         not.
          */
         Blame: {
             /** Label */
@@ -1429,6 +1432,11 @@ export interface components {
             /** Broken */
             broken: number;
             evidence: components["schemas"]["Evidence"];
+            /**
+             * Odd
+             * @default
+             */
+            odd: string;
             /**
              * Sentence
              * @description The fault and the remedy, at most fifteen words.
@@ -1896,6 +1904,14 @@ export interface components {
              * @description The cause and what the diver can do; without a cause what was shown and expected.
              */
             readonly sentence: string;
+            /**
+             * Strokes
+             * @description What was shown and what was expected, a line each; empty where it tells nothing.
+             *
+             *     Without a cause they are the sentence. Beside a cause they are told where they differ, and
+             *     where the take's could be followed.
+             */
+            readonly strokes: components["schemas"]["Words"][][];
             /**
              * Details
              * @description The numbers behind the sentence, as sentences of their own.
@@ -4421,9 +4437,12 @@ export interface components {
          *     ----------
          *     shown, expected
          *         The pieces of both, hand after hand, in seconds of the take's and of the demonstration's
-         *         clock.
-         *     differs
-         *         Index of the first piece that differs, in both; None where none does.
+         *         clock, each from where its hand begins.
+         *     differs, differs_in_expected
+         *         Indices of the first piece that differs, one past the last where one of both ends before;
+         *         None where none does.
+         *     bridged
+         *         Seconds of the take at which a hand jumped, so that its path is a straight line there.
          */
         Transcript: {
             /** Shown */
@@ -4432,6 +4451,13 @@ export interface components {
             expected: components["schemas"]["Piece"][];
             /** Differs */
             differs: number | null;
+            /** Differs In Expected */
+            differs_in_expected: number | null;
+            /**
+             * Bridged
+             * @default []
+             */
+            bridged: number[];
         };
         /**
          * TriggerDraft
@@ -4588,6 +4614,44 @@ export interface components {
             share: number;
             /** Against */
             against: number | null;
+        };
+        /**
+         * Words
+         * @description Words of a line that tells strokes.
+         *
+         *     Attributes
+         *     ----------
+         *     text
+         *         The words, with what separates them from those before.
+         *     start
+         *         Second of the take at which the stroke begins; None for other words.
+         *     differs
+         *         Whether it is the first stroke that differs.
+         *     bridged
+         *         Whether the hand jumped meanwhile, so that a part of the stroke is not seen.
+         *     folded
+         *         Strokes behind a fold, of which `text` tells the number.
+         */
+        Words: {
+            /** Text */
+            text: string;
+            /** Start */
+            start: number | null;
+            /**
+             * Differs
+             * @default false
+             */
+            differs: boolean;
+            /**
+             * Bridged
+             * @default false
+             */
+            bridged: boolean;
+            /**
+             * Folded
+             * @default []
+             */
+            folded: components["schemas"]["Words"][];
         };
         /**
          * WorkspaceOptions

@@ -164,6 +164,7 @@ export type Explanation = Omit<Schemas["ExplanationView"], "counterfactuals"> & 
 
 /** One stroke of a hand, in words and seconds. */
 export type Piece = Schemas["Piece"];
+export type Words = Schemas["Words"];
 
 /** The two gestures between which a take lies, nearest first; null: it lies between no two. */
 export type Pair = string[] | null;

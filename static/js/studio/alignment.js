@@ -149,13 +149,13 @@ function seekByPress({ currentTarget, clientX, clientY }, { query, time }, part)
  * @param {number} part
  * @param {Explanation} why
  */
-function differing({ label, query, time, gesture, gesture_time: theirs }, part, why) {
-  const { shown, expected, differs } = why.transcript;
-  if (differs === null || label !== why.expected) return [];
+function differing({ label, query, time, gesture, gesture_time }, part, why) {
+  const { shown, expected, differs, differs_in_expected: theirs } = why.transcript;
+  if (differs === null || theirs === null || label !== why.expected) return [];
   /** @type {[Place[][], number[], Piece | undefined][]} */
   const both = [
     [query, time, shown[differs]],
-    [gesture, theirs, expected[differs]],
+    [gesture, gesture_time, expected[theirs]],
   ];
   return both.map(([steps, times, piece]) => {
     const within = steps.filter(

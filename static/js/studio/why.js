@@ -16,11 +16,9 @@ import { trialBar, tryOut } from "./intervention-trial.js";
 import { seek } from "./playback.js";
 import { recogniseWith } from "./studio-view.js";
 
-/** @import { Counterfactual, Explanation, Piece, Recognition, SideEffect, State } from "../core/types.d.ts" */
+/** @import { Explanation, Recognition, SideEffect, State, Words } from "../core/types.d.ts" */
 
 const MOST_PARTS = 3; // Joints shown over time: those with the highest cost.
-const MOST_TOLD = 7; // Strokes told before a fold, as in a sentence (transcript.py).
-const UNFOLLOWED = new Set(["keypoints_jumped", "other_person", "not_seen"]);
 const LANE = 14; // Height of a joint's lane, in the drawing's own units.
 
 /**
@@ -135,48 +133,18 @@ export function drawCosts({ why, result, timeline }) {
   );
 }
 
-/** @param {SideEffect} effect */
-const effectOnOthers = ({ takes, repaired, broken }) =>
-  repaired || broken
-    ? `repairs ${repaired}, breaks ${broken} of ${takes} other takes`
-    : "repairs no other take";
-
 /**
  * The effect of an intervention on other takes whose gesture is known.
  *
  * @param {SideEffect | null} effect
  */
-const effectOf = (effect) =>
-  effect &&
-  h(
-    "small",
-    { className: "dim num" },
-    effect.takes ? effectOnOthers(effect) : "untested: no other takes are known",
-  );
-
-/**
- * The result of an intervention; for a take added as a demonstration it is right by construction.
- *
- * @param {Counterfactual} found
- */
-const resultOf = ({ change, label, confidence }) =>
-  change.kind === "further_demonstration"
-    ? h("small", { className: "dim" }, "right by construction")
-    : h("small", { className: "dim num" }, `${label}, ${Math.round(100 * confidence)} %`);
-
-/** @param {Counterfactual} found */
-function remedy(found) {
-  return h(
-    "li",
-    {},
-    h(
-      "button",
-      { type: "button", onclick: () => tryOut(found) },
-      h("span", {}, found.change.words),
-    ),
-    resultOf(found),
-    effectOf(found.effect),
-  );
+function effectOf(effect) {
+  if (!effect) return "changes this take alone";
+  const { takes, repaired, broken } = effect;
+  if (!takes) return "untested: no other takes are known";
+  return repaired || broken
+    ? `repairs ${repaired}, breaks ${broken} of ${takes} other takes`
+    : "repairs no other take";
 }
 
 /**
@@ -247,47 +215,34 @@ async function keepAsTest(result) {
 const note = (text) => h("p", { className: "dim" }, text);
 
 /**
- * The button that goes to the moment of the cause; nothing where it lasts throughout.
- *
- * @param {Explanation} why
+ * @param {string} words
+ * @param {() => unknown} onclick
  */
-function momentOf({ causes: [cause] }) {
-  return cause && cause.start !== null ? goTo(cause.start, `Go to ${moment(cause.start)}`) : null;
-}
+const link = (words, onclick) => h("button", { type: "button", className: "link", onclick }, words);
 
 /**
  * A button that goes to a moment.
  *
  * @param {number} seconds
  * @param {string} words
- * @param {string} [marked]
  */
-const goTo = (seconds, words, marked = "") =>
-  h(
-    "button",
-    {
-      type: "button",
-      className: `link ${marked}`,
-      onclick: () => {
-        if (state.timeline) seek(nearestFrame(state.timeline.time, seconds));
-      },
-    },
-    words,
-  );
+const goTo = (seconds, words) =>
+  link(words, () => {
+    if (state.timeline) seek(nearestFrame(state.timeline.time, seconds));
+  });
 
 /**
- * The button that shows the demonstrations of a gesture of which one is at fault.
+ * The button beside a cause: its demonstrations, the gestures that are alike, or its moment;
+ * nothing where it lasts throughout.
  *
  * @param {Explanation} why
  */
-function demonstrationsOf({ causes: [cause], blame: [blamed] }) {
+function placeOf({ causes: [cause], blame: [blamed] }) {
   const label = blamed?.label ?? cause?.label;
-  if (!label || (!blamed && cause.kind !== "demonstration")) return null;
-  return h(
-    "button",
-    { type: "button", className: "link", onclick: () => openDemonstrations(label) },
-    "Show its demonstrations",
-  );
+  if (cause?.kind === "near_gesture") return link("Change one in Health", () => go("health"));
+  if (label && (blamed || cause.kind === "demonstration"))
+    return link("Show its demonstrations", () => openDemonstrations(label));
+  return cause && cause.start !== null ? goTo(cause.start, `Go to ${moment(cause.start)}`) : null;
 }
 
 /**
@@ -308,94 +263,53 @@ const detailsOf = ({ details }) =>
   );
 
 /**
- * The counterfactuals as buttons that try them.
+ * The one thing to do: the best change as a button that tries it; nothing where none helps.
  *
  * @param {Explanation} why
  */
-function remediesOf(why) {
-  if (why.right) return null;
-  const offered = why.counterfactuals;
-  return h(
-    "div",
-    { className: "remedies" },
-    offered.length
-      ? [
-          h("h2", {}, `It would have been recognised as ${why.expected}`),
-          h("ul", {}, offered.map(remedy)),
-        ]
-      : note(`None of the ${why.tried} changes that were tried helps without harm.`),
-  );
+const remedyOf = ({ right, expected, counterfactuals: [best] }) =>
+  right || !best
+    ? null
+    : h(
+        "p",
+        { className: "remedies" },
+        `Recognised as ${expected} `,
+        h("button", { type: "button", onclick: () => tryOut(best) }, best.change.words),
+        h("small", { className: "dim num" }, ` ${effectOf(best.effect)}`),
+      );
+
+/**
+ * Words of a line that tells strokes: those of the take go to their moment.
+ *
+ * @param {Words} words
+ * @returns {HTMLElement}
+ */
+function drawn({ text, start, differs, bridged, folded }) {
+  if (folded.length) return h("details", {}, h("summary", {}, text), folded.map(drawn));
+  const marked = [differs ? "differs" : "", bridged ? "bridged" : ""].filter(Boolean);
+  const told = start === null ? h("span", {}, text) : goTo(start, text);
+  told.classList.add(...marked);
+  if (bridged) told.title = "The hand jumped here: its path is bridged by a line.";
+  return told;
 }
 
 /**
- * The strokes of the take or of the gesture in words, hand after hand; the first one that differs
- * is marked, and what comes long after it is folded. Those of the take go to their moment.
- *
- * @param {string} title
- * @param {Piece[]} pieces
- * @param {Explanation} why
- */
-function strokes(title, pieces, { transcript: { shown, expected, differs } }) {
-  const hands = [...new Set(pieces.map(({ hand }) => hand))];
-  const named = new Set([...shown, ...expected].map(({ hand }) => hand)).size > 1;
-  const first = differs === null ? undefined : pieces[differs];
-  /** @param {Piece} piece @param {number} index */
-  const words = (piece, index) => {
-    const marked = piece === first ? "differs" : "";
-    const told = h("span", { className: marked }, piece.words);
-    return [index ? ", " : "", pieces === shown ? goTo(piece.start, piece.words, marked) : told];
-  };
-  const rows = hands.map((hand, index) => {
-    const row = pieces.filter((each) => each.hand === hand);
-    const most = Math.max(Math.floor(MOST_TOLD / hands.length), first ? row.indexOf(first) + 1 : 0);
-    return [
-      index ? "; " : "",
-      named ? `${readable(hand).split(" ")[0]} hand ` : "",
-      row.slice(0, most).flatMap(words),
-      row.length > most
-        ? h(
-            "details",
-            {},
-            h("summary", {}, `, then ${row.length - most} more`),
-            row.slice(most).flatMap(words),
-          )
-        : null,
-    ];
-  });
-  return h(
-    "p",
-    {},
-    h("b", {}, `${title}: `),
-    rows.flat(2),
-    pieces.length === differs ? h("span", { className: "differs" }, " (ends)") : null,
-  );
-}
-
-/**
- * The strokes of both in words; without a cause they are the sentence. Beside a cause they are told
- * where they differ, and where the take's could be followed.
+ * The strokes of both in words; without a cause they are the sentence.
  *
  * @param {Explanation} why
  */
-function transcriptOf(why) {
-  const { shown, expected, differs } = why.transcript;
-  const unfollowed = why.causes.some(({ kind }) => UNFOLLOWED.has(kind));
-  if (why.right || !shown.length || !expected.length) return null;
-  if (why.causes.length && (differs === null || unfollowed)) return null;
-  return h(
-    "div",
-    {
-      className: why.causes.length ? "transcript" : "transcript why-sentence",
-      role: "group",
-      "aria-label": "Strokes in words",
-    },
-    strokes("You showed", shown, why),
-    strokes(why.expected, expected, why),
-    differs === null && why.pair?.includes(why.expected)
-      ? h("p", {}, `${why.pair.find((each) => each !== why.expected)} is about as near.`)
-      : null,
-  );
-}
+const transcriptOf = ({ causes, strokes }) =>
+  strokes.length
+    ? h(
+        "div",
+        {
+          className: causes.length ? "transcript" : "transcript why-sentence",
+          role: "group",
+          "aria-label": "Strokes in words",
+        },
+        strokes.map((line) => h("p", {}, line.map(drawn))),
+      )
+    : null;
 
 /** @param {Explanation} why */
 const notesOf = ({ notes }) =>
@@ -410,14 +324,13 @@ const notesOf = ({ notes }) =>
 /** @param {Explanation} why */
 function reasons(why) {
   const transcript = transcriptOf(why);
-  const to = demonstrationsOf(why) ?? momentOf(why);
   return [
     transcript && !why.causes.length
       ? null
-      : h("p", { className: "why-sentence" }, `${why.sentence} `, to),
+      : h("p", { className: "why-sentence" }, `${why.sentence} `, placeOf(why)),
     transcript,
     notesOf(why),
-    remediesOf(why),
+    remedyOf(why),
     detailsOf(why),
   ];
 }

@@ -94,7 +94,6 @@ def test_on_a_phone_the_answer_follows_the_picture_and_thumbs_find_every_control
             "#lab-box",
             "#outcome",
             ".why-sentence",
-            ".remedies",
             "#timeline",
             ".vote-images",
             ".vote-table",

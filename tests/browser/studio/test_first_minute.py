@@ -66,22 +66,22 @@ def test_the_start_shows_a_salute_and_the_example_stays_at_hand(
     # The strokes in words show at a glance that the take is upside down and unfinished.
     strokes = why.get_by_role("group", name="Strokes in words")
     expect(strokes).to_contain_text("You showed: down right, up right, left")
-    expect(strokes).to_contain_text("triangle: down left, right, up left")
+    expect(strokes).to_contain_text("'triangle': down left, right, up left")
     expect(strokes.locator(".differs")).to_have_text(["down right", "down left"])
     strokes.get_by_role("button", name="up right").click()
     expect(page.locator("#clock")).to_have_text(re.compile(r"^3\.[4-9]"))
 
 
-def test_after_seven_strokes_the_rest_is_folded_and_hands_are_named(
+def test_after_seven_strokes_the_rest_is_folded(
     open_page: OpenPage, server: Running, clips: Path
 ) -> None:
     def lengthen(route: Route) -> None:
         answer = route.fetch()
         why = answer.json()
-        first = why["transcript"]["shown"][0]
-        other = {**first, "hand": "left_wrist", "words": "up"}
-        why["transcript"]["shown"] = [first | {"words": f"stroke {n}"} for n in range(9)]
-        why["transcript"]["expected"] = [other, first]
+        word = why["strokes"][0][1]
+        words = [word | {"text": f"stroke {n}"} for n in range(9)]
+        more = word | {"text": ", then 2 more", "start": None, "folded": words[7:]}
+        why["strokes"][0] = [*words[:7], more]
         route.fulfill(response=answer, json=why)
 
     page = open_page()
@@ -90,13 +90,31 @@ def test_after_seven_strokes_the_rest_is_folded_and_hands_are_named(
     page.route("**/explanation*", lengthen)
     page.get_by_role("button", name="All keys").click()
     page.get_by_role("button", name="Example").click()
-    strokes = page.get_by_role("group", name="Strokes in words").locator("p")
-    shown, expected = strokes.nth(0), strokes.nth(1)
-    expect(expected).to_have_text("triangle: left hand up; right hand down right")
+    shown = page.get_by_role("group", name="Strokes in words").locator("p").first
     expect(shown.get_by_role("button", name="stroke 6")).to_be_visible()
     expect(shown.get_by_role("button", name="stroke 8")).to_be_hidden()
     shown.get_by_text("then 2 more").click()
     expect(shown.get_by_role("button", name="stroke 8")).to_be_visible()
+
+
+def test_gestures_that_are_alike_are_changed_in_health(
+    open_page: OpenPage, server: Running, clips: Path
+) -> None:
+    def call_alike(route: Route) -> None:
+        answer = route.fetch()
+        why = answer.json()
+        cause = {"kind": "near_gesture", "sentence": "They are nearly alike.", "start": None}
+        why.update(causes=[cause], sentence=cause["sentence"], blame=[])
+        route.fulfill(response=answer, json=why)
+
+    page = open_page()
+    add_example(server, clips)
+    page.reload()
+    page.route("**/explanation*", call_alike)
+    page.get_by_role("button", name="All keys").click()
+    page.get_by_role("button", name="Example").click()
+    page.get_by_role("button", name="Change one in Health").click()
+    expect(page.locator("#view-health")).to_be_visible()
 
 
 def test_the_tour_shows_its_steps_on_the_example(

@@ -13,6 +13,7 @@ from app.recognition.explanation.demonstration_faults import DemonstrationFault,
 from app.recognition.gestures.switches import Switches
 from app.recognition.poses.landmarks import other_side
 from app.recognition.poses.sequence import FloatArray
+from tests.recognition.explanation.test_strokes import stopping
 from tests.recognition.held_takes import FLAT
 from tests.recognition.moving_takes import circle as circled
 from tests.recognition.moving_takes import draw, without_hands
@@ -195,6 +196,8 @@ def test_a_sentence_has_at_most_fifteen_words(kind: str) -> None:
         where="in the middle of",
         frames="12 of 60 frames",
         degrees=60,
+        start=12.25,
+        end=16.75,
     )
     assert len(words.split()) <= 15
     assert re.search(r"\.$", words) or not words
@@ -211,3 +214,28 @@ def test_what_the_keypoints_show_stands_before_what_a_change_proves() -> None:
     xy, wrist = query.xy.copy(), query.landmarks.index("right_wrist")
     xy[26:36, wrist] += (250.0, 0.0)
     assert causes_of(replace(query, xy=xy))[0] == CauseKind.keypoints_jumped
+
+
+BOX = ((-1.1, -0.4), (-0.3, -0.4), (-0.3, 0.4), (-1.1, 0.4), (-1.1, -0.4))
+
+
+def test_a_way_from_the_salute_is_told_as_that_and_with_the_range_without_it() -> None:
+    box = Gesture.from_demonstration("box", recording(stopping(corners(*BOX), 4), frames=90))
+    query = recording(stopping(corners((-1.1, 0.9), *BOX), 5), frames=112)
+    flag = Gesture.from_demonstration("flag", query)
+    recognizer = Recognizer(Language("three", [*language_of().gestures, box, flag]), "full")
+    context = RecognitionContext(recognizer=recognizer, poses=query, whole=query)
+    cause = find_causes(context, "box")[0]
+    assert cause.kind == CauseKind.part_added
+    assert cause.sentence.startswith("A way before 'box' is included. Set its range: 0.")
+    assert (cause.start, cause.end) == pytest.approx((0.0, 0.7), abs=0.2)
+
+
+def test_an_arm_that_sinks_at_the_end_of_a_clip_is_a_missed_salute() -> None:
+    query = recording(stopping(corners((-0.7, -0.8), (-0.5, 0.5)), 1), frames=30)
+    context = RecognitionContext(
+        recognizer=Recognizer(language_of(), "full"), poses=query, whole=query, closed=False
+    )
+    (cause,) = find_causes(context, "hook")
+    assert cause.sentence.startswith("The first salute was missed")
+    assert find_causes(replace(context, closed=True), "hook") == ()

@@ -317,3 +317,18 @@ def test_a_gesture_with_as_many_demonstrations_as_it_may_have_gets_no_other() ->
 )
 def test_the_margin_is_to_the_nearest_other(scores: list[float], expected: float) -> None:
     assert measure_margin(scores, 0) == pytest.approx(expected)
+
+
+@pytest.mark.parametrize(("hand", "offered"), [("right_wrist", False), ("left_wrist", True)])
+def test_the_mirror_image_is_offered_for_the_other_arm_only(hand: str, offered: bool) -> None:
+    poses = recording(circle, hand=hand)
+    left = Gesture.from_demonstration("left", recording(SHAPES["line"], hand="left_wrist"))
+    recognizer = Recognizer(drawn_language().with_gesture(left), "full")
+    made = RecognitionContext(recognizer=recognizer, poses=poses, whole=poses)
+    switches = [
+        each.values["switch"]
+        for series in list_interventions(made, "wedge")
+        for each in series
+        if each.kind == "switch" and each.values["label"] == "wedge"
+    ]
+    assert ("mirror" in switches) == offered

@@ -6,18 +6,22 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from app.recognition import Gesture, Language, OsgError, PoseSequence, Recognizer
 from app.recognition.explanation.blame import Blame, Evidence
 from app.recognition.explanation.causes import Cause, CauseKind
 from app.recognition.explanation.context import RecognitionContext
 from app.recognition.explanation.explanation import Explanation, explain
+from app.recognition.explanation.strokes import transcribe_gesture
+from app.recognition.explanation.transcript import describe_strokes
 from app.recognition.gestures.profile import PROFILES
 from app.recognition.gestures.tuning import Tuning
 from tests.recognition.damaged_poses import with_sides_exchanged
 from tests.recognition.demonstrations import drawn_language, drawn_recognizer
 from tests.recognition.explanation.test_causes import corners
-from tests.recognition.strategies import circle, line, recording, recordings, square, wedge
+from tests.recognition.explanation.test_strokes import stopping
+from tests.recognition.strategies import Shape, circle, line, recording, recordings, square, wedge
 
 
 def context(poses: PoseSequence, recognizer: Recognizer) -> RecognitionContext:
@@ -292,3 +296,75 @@ def test_the_numbers_of_a_blamed_demonstration_stand_only_below_its_sentence() -
     assert numbers in told.model_copy(update={"causes": (cause,)}).details
     assert numbers not in told.model_copy(update={"causes": (other, cause)}).details
     assert numbers not in told.model_copy(update={"causes": ()}).details
+
+
+@pytest.mark.parametrize("query", [square, circle, corners((0, 0), (1, 1), (0, 1), (0, 0))])
+def test_a_recording_has_one_transcript_whatever_it_is_compared_with(query: Shape) -> None:
+    poses, language = recording(query), drawn_language()
+    found = [why(poses, label).transcript for label in language.labels]
+    assert len({each.shown for each in found}) == 1
+    assert [each.expected for each in found] == [
+        transcribe_gesture(gesture) for gesture in language.gestures
+    ]
+
+
+BELOW = ((-0.4, 0.1), (-1.2, 0.1), (-1.2, -0.7), (-0.4, -0.7), (-0.4, 0.1))
+
+
+def test_a_closed_figure_is_told_from_where_the_hand_begins() -> None:
+    box = Gesture.from_demonstration("box", recording(stopping(square, 4)))
+    recognizer = Recognizer(drawn_language().without("square").with_gesture(box), "full")
+    assert describe_strokes(transcribe_gesture(box)) == "right, down, left, up"
+    told = explain(
+        context(recording(stopping(corners(*BELOW), 4)), recognizer),
+        "box",
+        with_counterfactuals=False,
+    ).transcript
+    assert (told.expected, told.differs) == (transcribe_gesture(box), None)
+    assert describe_strokes(told.shown) == "left, up, right, down"
+
+
+def test_a_demonstration_is_told_alike_as_a_gesture_and_as_a_take() -> None:
+    for gesture, shown in zip(drawn_language().gestures, (circle, wedge, square), strict=False):
+        take = context(recording(shown), drawn_recognizer("full"))
+        made = Gesture.from_demonstration(gesture.label, take.poses)
+        assert take.strokes == transcribe_gesture(made)
+
+
+@pytest.fixture(scope="module")
+def box() -> Recognizer:
+    """Return a recogniser of a square whose hand stops at the corners, and others."""
+    drawn = Gesture.from_demonstration("box", recording(stopping(square, 4), frames=90))
+    return Recognizer(drawn_language().without("square").with_gesture(drawn), "full")
+
+
+@settings(max_examples=40)
+@given(
+    st.integers(8, 30),
+    st.floats(0.2, 0.8),
+    st.floats(0.06, 0.15),
+    st.floats(0.8, 1.5),
+    st.floats(0, 2 * np.pi),
+    st.sampled_from([("left_wrist", "right_wrist"), ("right_wrist",), ("left_wrist",)]),
+)
+def test_a_keypoint_that_jumps_changes_neither_strokes_nor_label(
+    box: Recognizer,
+    rate: int,
+    share: float,
+    seconds: float,
+    far: float,
+    angle: float,
+    hands: tuple[str, ...],
+) -> None:
+    clean = recording(stopping(square, 4), frames=4 * rate, rate=rate)
+    xy, first = clean.xy.copy(), int(share * len(clean))
+    away = slice(first, first + max(1, int(seconds * rate)))
+    for hand in hands:
+        by = 120 * far * np.array([np.cos(angle), np.sin(angle)])
+        xy[away, clean.landmarks.index(hand)] += by
+    jumped = context(replace(clean, xy=xy), box)
+    assert describe_strokes(jumped.strokes) == "right, down, left, up"
+    assert jumped.result.label == "box"
+    told = explain(jumped, "circle", with_counterfactuals=False)
+    assert bool(told.transcript.bridged) == ("right_wrist" in hands)
+    assert any("is bridged there" in each for each in told.details) == ("right_wrist" in hands)

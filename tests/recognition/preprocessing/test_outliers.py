@@ -69,10 +69,22 @@ def test_one_far_place_in_any_movement_is_found(
 
 
 def test_a_jab_is_no_jump() -> None:
-    """There and back over half a torso length (25 cm), seen in one frame of a slow camera."""
+    """There and back over half a torso length (25 cm), as fast as an arm can accelerate."""
 
     def jab(share: FloatArray) -> FloatArray:
-        away = 0.5 * np.exp(-0.5 * ((share - 0.5) / 0.03) ** 2)
+        away = 0.5 * np.exp(-0.5 * ((share - 0.5) / 0.05) ** 2)
         return np.stack([-0.7 - away, 0.3 * share], axis=1)
 
     assert found(Trajectory.from_poses(recording(jab, frames=15, rate=15))) == []
+
+
+@pytest.mark.parametrize("rate", [5, 8, 15, 30, 60])
+def test_a_hand_that_jumps_and_goes_on_is_found_at_every_rate(rate: int) -> None:
+    trajectory = Trajectory.from_poses(recording(circle, frames=3 * rate, rate=rate))
+    assert found(thrown_off(trajectory, [rate], (0.9, 1.6))) == [rate]
+
+
+def test_what_a_tracker_blends_on_its_way_back_is_no_place_either() -> None:
+    trajectory = Trajectory.from_poses(recording(line, frames=45, rate=15))
+    jumped = thrown_off(trajectory, [20], (0.3, 0.6))
+    assert found(thrown_off(jumped, [21], (0.06, 0.12))) == [20, 21]

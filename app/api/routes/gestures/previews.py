@@ -16,7 +16,8 @@ from app.api.services.demonstration_sources import view_faults
 from app.api.services.running_studio import CurrentStudio, Studio, computed
 from app.api.services.trajectory_images import draw_trajectory_image
 from app.recognition import Gesture, GestureError, Language, Recognizer
-from app.recognition.explanation.transcript import describe_strokes, transcribe_gesture
+from app.recognition.explanation.strokes import transcribe_gesture
+from app.recognition.explanation.transcript import describe_strokes
 from app.recognition.features.motion import find_hands
 from app.recognition.features.png import to_data_url
 from app.recognition.gestures.demonstration import condense

@@ -89,7 +89,7 @@ def test_a_demonstration_unlike_the_takes_of_the_test_set_is_named(
     faults = [each for each in report["warnings"] if each["kind"] == "demonstration_fault"]
     assert [each["gestures"] for each in faults] == [["circle"]]
     assert faults[0]["message"] == (
-        "Show the demonstration of 'circle' again: a take in its place repairs 2, breaks 0."
+        "Your demonstration of 'circle': up, where 3 of 3 takes have: clockwise loop."
     )
 
 

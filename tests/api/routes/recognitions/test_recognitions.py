@@ -162,9 +162,10 @@ def test_a_recognition_is_explained_by_what_was_meant(
     assert why["tried"] > 0
     assert all(each["effect"]["lost"] == [] for each in why["counterfactuals"] if each["effect"])
     assert (why["nearest"], why["runner_up"]) == ("line", "circle")
-    assert why["sentence"] == "You showed: right. 'circle': down right, clockwise loop."
+    assert why["sentence"] == "You showed: right (ends). 'circle': clockwise loop, down right."
     assert why["transcript"]["shown"][0]["words"] == "right"
     assert why["transcript"]["differs"] == 1
+    assert [each["text"] for each in why["strokes"][0]] == ["You showed: ", "right", " (ends)"]
     assert len(why["sentence"].split()) <= 15
     assert any(line.startswith("Confidence") for line in why["details"])
     start, end = kept["start"], kept["end"]
