@@ -338,7 +338,7 @@ def test_a_change_of_the_language_repeats_the_test_and_says_what_got_worse(
         expect(page.get_by_text("1 take worse since the revision before")).to_be_visible()
         page.get_by_role("button", name="Show", exact=True).last.click()
         section = page.get_by_role("region", name="Test with clips")
-        expect(section).to_contain_text("since the revision before: 1 take worse")
+        expect(section).to_contain_text("1 take worse since the revision before")
         expect(section.get_by_role("row").filter(has_text="other way.mp4")).to_contain_text("worse")
         assert faults(page) == []
 
