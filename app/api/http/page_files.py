@@ -38,8 +38,10 @@ INVITATION_FILES = frozenset(
         "js/camera/mirror.js",
         "js/camera/recording.js",
         "js/camera/take-end.js",
+        "js/camera/take-steps.js",
         "js/camera/trouble.js",
         "js/camera/video-source.js",
+        "js/clips/salute-threshold.js",
         "js/core/browser-store.js",
         "js/core/dom.js",
         "js/core/server.js",
@@ -48,6 +50,22 @@ INVITATION_FILES = frozenset(
         "js/invitation/invitation-view.js",
         "js/invitation/take-camera.js",
         "js/invitation/take-sending.js",
+        "js/templates.js",
+        *(
+            f"vendor/lit-html/{name}.js"
+            for name in (
+                "async-directive",
+                "directive",
+                "directive-helpers",
+                "directives/guard",
+                "directives/if-defined",
+                "directives/live",
+                "directives/private-async-helpers",
+                "directives/repeat",
+                "directives/until",
+                "lit-html",
+            )
+        ),
     }
 )
 """Files that anybody may fetch: those that the page of invited people needs."""

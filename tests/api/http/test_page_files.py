@@ -8,7 +8,6 @@ import httpx
 import pytest
 
 from app import resources
-from app.api.http.page_files import INVITATION_FILES
 from app.settings import Settings
 from tests.api.running import client_of, running
 
@@ -103,17 +102,3 @@ def test_the_page_and_its_files_are_compressed_and_no_answer_of_the_api(
 @pytest.mark.parametrize("path", ["", "js", "js/none.js", "0123456789abcdef", "../secret"])
 def test_what_is_no_file_is_not_found(client: httpx.Client, path: str) -> None:
     assert client.get(f"static/{path}").status_code == 404
-
-
-def test_anybody_may_fetch_what_the_page_of_invited_people_imports() -> None:
-    static = resources.static_dir()
-    waiting, found = [static / "js" / "invitation" / "invitation-view.js"], set[Path]()
-    while waiting:
-        module = waiting.pop()
-        if module not in found:
-            found.add(module)
-            imports = re.findall(r'\bfrom "(\.[^"]+\.js)"', module.read_text(encoding="utf-8"))
-            waiting += [(module.parent / each).resolve() for each in imports]
-    assert {module.relative_to(static).as_posix() for module in found} == {
-        file for file in INVITATION_FILES if file.endswith(".js")
-    }
