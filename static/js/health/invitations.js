@@ -242,8 +242,13 @@ export async function loadInvitations({ view, gestures }) {
  * @param {...ReceivedTake} takes
  */
 async function settle(language, invitation, status, ...takes) {
+  const other = status === "added" ? "removed" : "added";
+  const of = takes.length > 1 ? plural(takes.length, "take") : `Take of ${takes[0].label}`;
   try {
     for (const take of takes) await api.invitations.settle(language, invitation, take.id, status);
+    const back = () => settle(language, invitation, other, ...takes);
+    const label = other === "added" ? "Add it after all" : "Remove it again";
+    toast(`${of} ${status}`, takes[0].diver, { action: { label, run: back } });
   } catch (error) {
     complain(error, status === "added" ? "Adding the take" : "Removing the take");
   }

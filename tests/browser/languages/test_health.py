@@ -98,6 +98,9 @@ def test_what_to_expect_is_measured_among_people_and_the_test_set_stands_first(
         expect(first).to_contain_text("Of the test set")
         expect(first).to_contain_text("of 1 takes are read right")
         expect(known_of(page).get_by_role("columnheader", name="Test set")).to_be_visible()
+        # The test is nearer than the map, which tells less of what others will reach.
+        headings = page.get_by_role("heading", level=2).all_inner_texts()
+        assert headings.index("Test with clips") < headings.index("Map")
 
 
 def test_the_author_answers_whether_the_hands_of_two_gestures_are_meant(

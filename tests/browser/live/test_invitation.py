@@ -230,6 +230,8 @@ def test_three_people_finish_a_language(
     assert faults(page) == []
     wrong.get_by_role("button", name="Remove").click()
     expect(wrong).to_contain_text("removed")
+    expect(page.get_by_text("Take of circle removed")).to_be_visible()
+    expect(page.get_by_role("button", name="Add it after all")).to_be_visible()
     assert divers_of(client, language, "circle") == ["Ana", "Bo", "Cy"]
 
     # The link does nothing any more once it is withdrawn, and what came in can be taken back.

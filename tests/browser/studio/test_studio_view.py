@@ -118,7 +118,7 @@ def test_answer_remedy_picture_drawings_and_first_voters_are_in_sight_without_sc
         table.locator("tbody tr").first,
     ):
         expect(part).to_be_in_viewport(ratio=1)
-    page.get_by_role("button", name="Show the voters without weight").click()
+    page.get_by_role("button", name="Show the rows without weight").click()
     expect(table.locator("tbody tr")).to_have_count(len(MOTION_VOTERS))
 
 
@@ -256,7 +256,12 @@ def test_a_weight_is_tried_where_the_distances_are_shown(
     page = open_page(query, size=(1440, 900), scene=False)
     weight = page.get_by_label(re.compile("^Weight of velocity:"))
     expect(weight).to_have_value("1")
-    expect(page.locator("#outcome")).to_contain_text("100 % of the votes")
+    expect(page.locator("#outcome")).to_contain_text("distance 0")
+    # The table ranks as the outcome does.
+    table = page.get_by_role("table", name="Votes")
+    expect(table.locator("th.gesture").first).to_contain_text("circle")
+    expect(table.get_by_role("row").filter(has_text="distance")).to_be_visible()
+    expect(table).not_to_contain_text("voter")
     joint = page.get_by_label("Joint whose paths are drawn")
     drawn = joint.input_value()
     weight.select_option("off")

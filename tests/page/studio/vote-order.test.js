@@ -9,6 +9,8 @@ import {
 } from "../../../static/js/studio/vote-order.js";
 
 const RESULT = {
+  profile: "paper",
+  scores: [1, 2, 3],
   voters: ["hu", "path", "tempo"],
   gestures: ["line", "circle", "square"],
   distances: [
@@ -22,6 +24,12 @@ const RESULT = {
 
 test("voters stand by weight, gestures by the weight of their voters and then by nearness", () => {
   assert.deepEqual(orderOf(RESULT), { rows: [1, 0, 2], columns: [1, 0, 2] });
+});
+
+test("where distance decides, the nearest gesture stands first whatever the votes", () => {
+  const scores = [1.2, null, 0.7];
+  assert.deepEqual(orderOf({ ...RESULT, profile: "full", scores }).columns, [2, 0, 1]);
+  assert.deepEqual(orderOf({ ...RESULT, profile: "full", scores: [] }).columns, [1, 0, 2]);
 });
 
 test("nearness is relative to the voter's own distances", () => {
