@@ -15,7 +15,7 @@ import { expectation, expectedOf, NONE } from "../languages/test-set.js";
 import { elementOf, html, nothing, render } from "../templates.js";
 import { buildRanges } from "./labelled-ranges.js";
 import { frameShown, keepsFrame } from "./playback.js";
-import { byDistance, shortNumber } from "./vote-order.js";
+import { byDistance } from "./vote-order.js";
 import { supportOf } from "./vote-support.js";
 import { drawTimeline } from "./timeline.js";
 import { enlargePicture } from "./clip-picture.js";
@@ -209,7 +209,7 @@ const isItself = (result) =>
  */
 const rankWords = (result) =>
   byDistance(result)
-    ? `distance ${shortNumber(result.scores[result.gestures.indexOf(result.nearest)])}`
+    ? `distance ${result.scores[result.gestures.indexOf(result.nearest)]?.toFixed(2)}`
     : `${percent(supportOf(result).get(result.nearest) ?? 0)} of the votes`;
 
 /**

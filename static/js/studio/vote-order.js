@@ -94,7 +94,7 @@ export function shortNumber(value) {
   if (value === null) return "\u221e";
   if (value === 0) return "0";
   const size = Math.abs(value);
-  if (size < 0.001) return value.toExponential(0);
+  if (size < 0.001 || size >= 10000) return value.toExponential(0);
   const decimals = size < 0.1 ? 3 : size < 10 ? 2 : size < 100 ? 1 : 0;
   return value.toFixed(decimals).replace(/^0/, "");
 }

@@ -27,9 +27,9 @@ import {
  * @type {Record<Recognition["profile"], string>}
  */
 const CONFIDENCE_WORDS = {
-  full: "Confidence is the estimated probability that this gesture was meant; the distance is that of all rows together, about 1 for another gesture.",
+  full: "Confidence is the estimated probability that this gesture was meant; the distance is that of all comparisons together, about 1 for another gesture.",
   paper:
-    "Confidence says how clearly the winner leads, by votes and by distance; the weight is that of the rows whose nearest gesture it is.",
+    "Confidence says how clearly the winner leads, by votes and by distance; the weight is that of the comparisons whose nearest gesture it is.",
 };
 
 /** @type {(factor: number) => string} */
@@ -131,7 +131,7 @@ function table(result, rows, columns) {
     <table class="vote-table" aria-label="Votes">
       <thead>
         <tr>
-          <th scope="col">compared</th>
+          <th scope="col">by</th>
           <th scope="col">weight</th>
           ${columns.map((column) => head(result, column))}
         </tr>
@@ -149,7 +149,7 @@ function table(result, rows, columns) {
             : nothing
         }
         <tr>
-          <th scope="row" colspan="2">weight of its rows</th>
+          <th scope="row" colspan="2">weight for it</th>
           ${columns.map(
             (column) =>
               html`<td class="votes-for">
@@ -181,12 +181,12 @@ function ballot(result) {
     type="button"
     class="link"
     aria-expanded=${whole}
-    aria-label="${text} the rows without weight"
+    aria-label="${text} the comparisons without weight"
     @click=${turn}
   >
     ${text}
   </button>`;
-  const words = `${plural(silent.length, "row")} without weight`;
+  const words = `${plural(silent.length, "comparison")} without weight`;
   return html`<div>${table(result, whole ? rows : heard, columns)}</div>
     ${silent.length ? html`<p class="dim">${words} ${toggle}</p>` : nothing}`;
 }

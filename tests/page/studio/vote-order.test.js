@@ -38,8 +38,8 @@ test("nearness is relative to the voter's own distances", () => {
 });
 
 test("a distance takes four characters", () => {
-  const texts = [0, 0.0531, 0.53, 5.3, 53, 530, null].map(shortNumber);
-  assert.deepEqual(texts, ["0", ".053", ".53", "5.30", "53.0", "530", "\u221e"]);
+  const texts = [0, 0.0531, 0.53, 5.3, 53, 530, 5.3e9, null].map(shortNumber);
+  assert.deepEqual(texts, ["0", ".053", ".53", "5.30", "53.0", "530", "5e+9", "\u221e"]);
 });
 
 test("voters without weight stand apart, unless a person took their weight", () => {
