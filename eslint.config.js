@@ -29,6 +29,14 @@ export default [
           ignoreTemplateLiterals: true,
         },
       ],
+      "no-restricted-syntax": [
+        "error",
+        {
+          selector:
+            ":not(TaggedTemplateExpression) > TemplateLiteral > TemplateElement[value.raw=/\\n/]",
+          message: "The server sends scripts without indentation, also of text of several lines.",
+        },
+      ],
       "no-var": "error",
       "object-shorthand": "error",
       "prefer-const": "error",

@@ -16,6 +16,7 @@ from app.cli.clip_argument import ClipReading, clip_and_span, reads_clips, recog
 from app.cli.mcap_file import save_bag
 from app.cli.recognition_report import build_report
 from app.cli.terminal import show_explanation, show_recognition, tell
+from app.evaluation.confusion import NONE
 from app.recognition import Language, Recognition, Recognizer, Recording, Take
 from app.recognition.errors import OsgError
 from app.recognition.explanation.context import RecognitionContext
@@ -50,7 +51,10 @@ def recognize(
     ] = None,
     expected: Annotated[
         str | None,
-        typer.Option(metavar="LABEL", help="Gesture that was meant; prints an explanation."),
+        typer.Option(
+            metavar="LABEL",
+            help=f"Gesture that was meant; prints an explanation. {NONE}: none of these.",
+        ),
     ] = None,
     without_salutes: Annotated[
         bool, typer.Option("--without-salutes", help="Find gestures anywhere in the clip.")
@@ -73,7 +77,7 @@ def recognize(
     """Recognise the gestures in a clip, with every voter's distance to every gesture."""
     path, span = clip_and_span(clip)
     loaded = Language.load(language)
-    if expected is not None:
+    if expected is not None and expected != NONE:
         # Raises an error for an unknown label before the clip is read.
         expected = loaded.gesture(expected).label
     recognizer = Recognizer(loaded, profile)
@@ -118,7 +122,7 @@ def show_results(
     explanations = [
         explain(RecognitionContext.of_take(recognizer, take), expected)
         for take in takes
-        if expected is not None
+        if expected is not None and expected != NONE
     ]
     if as_json:
         name = recognizer.language.name
@@ -127,8 +131,17 @@ def show_results(
         return
     for (take, result), explanation in zip_longest(results, explanations):
         show_recognition(take, result, recognizer.language.trigger)
+        if expected == NONE:
+            tell(f"the take from {take.start:.2f} s shows none of these: {judge_none(result)}")
         if explanation is not None:
             show_explanation(explanation)
+
+
+def judge_none(result: Recognition) -> str:
+    """Say whether an answer to a take of none of the gestures is right."""
+    if result.label is not None:
+        return f"read as {result.label!r}, wrong"
+    return "refused, right" if result.pair is None else "asked about"
 
 
 def explain_absence(

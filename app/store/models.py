@@ -153,7 +153,7 @@ class Clip(_OwnedRow, table=True):
     @property
     def received_size(self) -> int:
         """Bytes that were sent: those of the chapters, if the file was joined of them."""
-        return sum(json.loads(self.options or "{}").get("chapters", ())) or self.size
+        return sum((self.options or {}).get("chapters", ())) or self.size
 
     @property
     def needs_topic(self) -> bool:

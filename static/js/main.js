@@ -78,7 +78,7 @@ function drawEverything() {
   follow(["uploads"], drawUploads);
   follow(["clips", "jobs", "clip", "library"], drawClips);
   follow(["clips", "jobs", "loaded"], drawBatch);
-  follow(["clips", "gestures", "clip"], drawTableButton);
+  follow(["clips", "gestures", "clip", "samples"], drawTableButton);
   follow(["clips", "gestures"], drawTakesButton);
   follow(["quota"], drawQuota);
   follow(["quota", "clips", "uploads"], followQuota);

@@ -225,12 +225,14 @@ def test_a_gesture_is_found_without_looking_for_salutes(
 
 
 @pytest.mark.slow
-def test_a_range_by_hand_needs_no_salute(
+def test_a_range_by_hand_needs_no_salute_and_a_take_of_none_is_judged(
     osg_studio: OsgStudio, tmp_path: Path, thin_clip: Callable[[str], Path]
 ) -> None:
     clip = shortened(thin_clip("circle-test-1"), tmp_path / "circle.mp4", 4.4)
-    ended = osg_studio("recognize", f"{clip}@2.4-4.2", "--language", LANGUAGE)
+    arguments = ("recognize", f"{clip}@2.4-4.2", "--language", LANGUAGE, "--expected", "-")
+    ended = osg_studio(*arguments)
     assert ended.code == 0
+    assert "shows none of these: read as 'circle', wrong" in ended.error
     assert ended.out.split("\t")[:3] == ["2.40", "4.20", "circle"]
 
 

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import hashlib
 import json
+import math
 from collections import defaultdict
 from collections.abc import Sequence
 
 from app.api.http.schemas.gestures import DemonstrationFaultView, NewDemonstration, SourceView
+from app.api.http.schemas.recognitions import GestureTrial
 from app.api.http.schemas.values import NONE_EXPECTED
 from app.api.services.demonstration_faults import count_triggers_in_clip, faults_of_source
 from app.api.services.running_studio import Studio
@@ -91,25 +93,46 @@ def _find_by_digests(
 
 
 class OwnDemonstrations:
-    """The demonstrations of a language that are known takes as well."""
+    """The demonstrations of a language that are known takes as well.
 
-    def __init__(self, studio: Studio, language: Language) -> None:
+    Parameters
+    ----------
+    studio
+        Running studio with the clips.
+    language
+        The language, with the change of the trial.
+    trial
+        A change that is not saved: the source of its demonstration is not stored.
+
+    """
+
+    def __init__(
+        self, studio: Studio, language: Language, trial: GestureTrial | None = None
+    ) -> None:
         self._language = language
         self._shown = digests_of(language)
-        self._of_clip = defaultdict[str, list[tuple[str, int, DemonstrationSource]]](list)
+        self._of_clip = defaultdict[str, list[tuple[str, int, float, float]]](list)
         for label, row in _find_by_digests(studio, self._shown).items():
             for number, source in enumerate(row):
                 if source is not None:
-                    self._of_clip[source.clip_id].append((label, number, source))
+                    place = (label, number, source.start, source.end)
+                    self._of_clip[source.clip_id].append(place)
+        if trial is not None and (tried := trial.change.demonstration) is not None:
+            label = language.gesture(trial.label).label
+            number = len(self._shown[label]) - 1 if trial.change.further else 0
+            end = math.inf if tried.end is None else tried.end
+            place = (label, number, tried.start or 0.0, end)
+            self._of_clip[tried.clip_id].append(place)
 
     def find(self, clip_id: str, start: float, end: float) -> LeftOut:
         """Return label and number of each demonstration that covers most of a take."""
         least = SAME_TAKE * (end - start)
-        return tuple(
+        found = (
             (label, number)
-            for label, number, source in self._of_clip.get(clip_id, ())
-            if min(end, source.end) - max(start, source.start) > least
+            for label, number, begun, ended in self._of_clip.get(clip_id, ())
+            if min(end, ended) - max(start, begun) > least
         )
+        return tuple(dict.fromkeys(found))
 
     def show_former(self, expected: str, former: Sequence[str] | None) -> bool:
         """Return whether a gesture has another movement than one of these digests."""

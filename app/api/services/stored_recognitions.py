@@ -12,7 +12,7 @@ from app.api.http.schemas.recognitions import GestureTrial, RecognitionRequest, 
 from app.api.services.clip_responses import shows_pictures
 from app.api.services.clip_takes import find_takes
 from app.api.services.demonstration_faults import faults_of_language
-from app.api.services.demonstration_sources import LeftOut, OwnDemonstrations, find_sources
+from app.api.services.demonstration_sources import OwnDemonstrations, find_sources
 from app.api.services.gesture_edits import change_gesture_of, demonstration_at
 from app.api.services.known_takes import load_known
 from app.api.services.running_studio import Studio
@@ -33,7 +33,7 @@ def recognize_range(
 ) -> store.RecognitionRecord:
     """Recognise a range of a clip by the newest revision of a language, and store the answer.
 
-    A demonstration is read by the others of its gesture, if there are any.
+    A demonstration, also one on trial, is read by the others of its gesture, if there are any.
 
     Raises
     ------
@@ -51,11 +51,11 @@ def recognize_range(
     profile = wanted.profile or language.profile
     require_landmarks_of(studio.clips.get(wanted.clip_id).clip, recording.poses, language)
     meant = find_clip_range(recording, wanted.start, wanted.end, trigger=language.trigger)
-    without: LeftOut = ()
-    if wanted.trial is None:
-        own = OwnDemonstrations(studio, language)
-        found = own.find(wanted.clip_id, meant.start, meant.end)
-        without = found if all(own.leave_one(label, found) for label, _ in found) else ()
+    tried = language if wanted.trial is None else try_gesture(studio, state, wanted.trial)
+    own = OwnDemonstrations(studio, tried, wanted.trial)
+    without = own.find(wanted.clip_id, meant.start, meant.end)
+    if not all(own.leave_one(label, without) for label, _ in without):
+        without = ()
     recognizer = make_recognizer(studio, state, profile, wanted.tuning, wanted.trial, without)
     answer = recognizer.recognize(meant.poses, meant.unseen).to_dict()
     if without:

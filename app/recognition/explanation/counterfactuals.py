@@ -170,9 +170,9 @@ class Counterfactual:
 
     @property
     def repairs_no_other(self) -> bool:
-        """Whether it makes this take a demonstration, and repairs none of the known takes."""
+        """Whether it makes this take a demonstration, and is known to repair no other take."""
         effect, kind = self.effect, self.change.kind
-        if kind != "further_demonstration" or effect is None or not effect.takes:
+        if kind != "further_demonstration" or effect is None:
             return False
         return effect.repaired <= effect.broken
 
@@ -237,12 +237,23 @@ def find_counterfactuals(
                 first = best.get(change.kind, found)
                 best[change.kind] = min(first, found, key=lambda each: each.rank)
                 break
-    kept = [each for each in best.values() if each.effect is None or not each.effect.lost]
+    is_far = _is_far_off(context, expected)
+    kept = [
+        each
+        for each in best.values()
+        if (each.effect is None or not each.effect.lost) and not (is_far and each.repairs_no_other)
+    ]
     ranked = sorted(kept, key=lambda each: each.rank)
     # A take that becomes a demonstration is right by itself: alone that is no remedy.
-    if ranked and ranked[0].repairs_no_other:
+    if context.known and ranked and ranked[0].repairs_no_other:
         ranked = []
     return tuple(ranked), tried
+
+
+def _is_far_off(context: RecognitionContext, expected: str) -> bool:
+    """Return whether a take is too far from a gesture to be accepted as one."""
+    novelty = context.result.novelty
+    return bool(novelty.size and novelty[context.language.labels.index(expected)] > 1)
 
 
 def _verify(

@@ -7,7 +7,7 @@ const AFTER_TAKE = 1000; // ms, so that the clip shows the whole end of a gestur
 /**
  * Watch for the ends of takes; `over()` is called at each.
  *
- * @param {() => void} over
+ * @param {() => unknown} over
  */
 export function takeEnd(over) {
   let ended = false; // a take ended, and its closing trigger is still held
@@ -24,8 +24,10 @@ export function takeEnd(over) {
      * @param {string} trigger
      */
     recognized({ closed }, trigger) {
-      if (closed && (trigger === "gesture" || trigger === "none") && !ending)
-        ending = setTimeout(over, AFTER_TAKE);
+      if (!closed) return;
+      // The look at which a held trigger ended the take may be left out on a slow machine.
+      if (trigger !== "gesture" && trigger !== "none") ended = true;
+      else ending ||= setTimeout(over, AFTER_TAKE);
     },
     reset() {
       clearTimeout(ending);

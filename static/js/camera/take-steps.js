@@ -1,10 +1,12 @@
 // The steps of a take before the camera, in words: what is awaited, what is seen, what comes next.
 
 import { SALUTE } from "../clips/salute-threshold.js";
-import { state as page } from "../core/state.js";
 
 /** @import { Seen } from "./live-messages.d.ts" */
 
+const FEW = 6; // frames a second; with fewer, a gesture of 1 s has at most five points.
+
+/** @type {Record<string, string>} */
 const HOW_TO = {
   salute: "Hold a Vulcan salute, show the gesture, salute again.",
   pose: "Hold the pose of the arms, show the gesture, hold the closing pose.",
@@ -12,8 +14,19 @@ const HOW_TO = {
   none: "Show a gesture, with rest before and after it.",
 };
 
-/** How a take is shown, by the trigger of the language on display. */
-export const howTo = () => HOW_TO[page.gestures?.trigger?.kind ?? "salute"];
+/**
+ * How a take is shown, by the kind of trigger.
+ *
+ * @param {string} [kind]
+ */
+export const howTo = (kind = "salute") => HOW_TO[kind];
+
+/**
+ * Whether too few frames are looked at to see a gesture.
+ *
+ * @param {Seen} message
+ */
+export const isSlow = ({ frames_per_second: rate }) => rate < FEW;
 
 /** @type {[string, string]} */
 const NOBODY = ["", "Nobody is in the picture."];
@@ -36,14 +49,14 @@ function posed({ pose, salute, held, state }) {
 }
 
 /**
- * The diver's step and the next instruction, from a message of the server.
+ * The diver's step and the next instruction, from a message of the server and the kind of trigger.
  *
- * @param {Seen} message
+ * @param {Pick<Seen, "pose" | "salute" | "held" | "state">} message
+ * @param {string} [kind]
  */
-export function situation({ pose, salute, held, state }) {
-  const trigger = page.gestures?.trigger;
-  if (trigger && trigger.kind !== "pose") return pose ? ["gesture", "Show a gesture."] : NOBODY;
-  if (trigger) return posed({ pose, salute, held, state });
+export function situation({ pose, salute, held, state }, kind = "salute") {
+  if (kind === "pose") return posed({ pose, salute, held, state });
+  if (kind !== "salute") return pose ? ["gesture", "Show a gesture."] : NOBODY;
   if (state === "done") return ["closing", "Gesture taken. Let the salute go."];
   if (state === "recording" && held)
     return ["salute", "Salute held. Let it go and show the gesture."];

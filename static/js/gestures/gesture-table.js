@@ -7,14 +7,15 @@ import { heldName } from "../clips/salutes.js";
 import { addedAt, posterOf, statusText } from "../clips/clip-store.js";
 import * as api from "../core/api.js";
 import { tabStore } from "../core/browser-store.js";
-import { byId, h, reconcile, WRITES } from "../core/dom.js";
+import { closeDialog, showDialog } from "../core/dialogs.js";
+import { byId, h } from "../core/dom.js";
 import { plural } from "../core/format.js";
 import { follow, state } from "../core/state.js";
-import { limit } from "../core/text-limit.js";
 import { complain } from "../core/toasts.js";
 import { showDone } from "../core/undo.js";
 import { begin, choose } from "../languages/language-store.js";
 import { edit } from "../languages/revision-edit.js";
+import { guard, html, limited, live, optionsOf, render, repeat } from "../templates.js";
 import { forgetFailures, loadTakesOfClips, takesByClip } from "./clip-takes.js";
 import {
   candidatesOf,
@@ -31,21 +32,23 @@ import {
 /** @import { GestureRow, Language, State, TakeRow } from "../core/types.d.ts" */
 
 /**
- * The table on display; `edited` is what the user chose, `refused` what the server
- * refused, both by row. `readings` are what the language `reads` in takes that have a name of it.
+ * The table on display; `edited` is what the user chose, `refused` what the server refused, both by
+ * row. `readings` are what the language `reads` in takes that have a name of it. `keep` is the
+ * number of rows to keep, once one is chosen, and `kept` tells by whose demonstrations they were.
  *
  * @typedef {object} Table
- * @property {HTMLElement} list
- * @property {HTMLElement} note
- * @property {ReturnType<typeof bestChoice>} best
- * @property {HTMLButtonElement} save
- * @property {HTMLInputElement} name of the new language
+ * @property {HTMLFormElement} form
+ * @property {HTMLElement} older
+ * @property {string} name of the new language
  * @property {string} target the language to save into; empty for a new one
  * @property {Map<string, Partial<GestureRow>>} edited
  * @property {Map<string, string>} refused
  * @property {Map<string, TakeRow>} readings
  * @property {string} reads
  * @property {AbortController} leaving
+ * @property {string | null} keep
+ * @property {string} kept
+ * @property {boolean} comparing
  * @property {boolean} saving
  */
 
@@ -62,7 +65,7 @@ let table = null;
 
 /** The table, for code that runs only while it is on display. */
 const onDisplay = () => /** @type {Table} */ (table);
-const isOpen = () => Boolean(table?.list.isConnected && byId("dialog").open);
+const isOpen = () => Boolean(table?.form.isConnected && byId("dialog").open);
 let followed = false;
 let drawing = false;
 
@@ -73,19 +76,24 @@ const targetLanguage = () => (state.gestures?.id === onDisplay().target ? state.
 const usable = () => state.clips.filter(({ status }) => status === "done" || BUSY.has(status));
 
 /**
- * Show the button that opens the table; it is highlighted while several clips show no gesture and
- * none on display can be recognised: one button of a screen stands out.
+ * Show the button that opens the table. The next step stands out: this button while several clips
+ * of the user's own show no gesture and a language of the user's own cannot recognise the clip on
+ * display, else *Recognise*.
  *
  * @param {State} state
  */
-export function drawTableButton({ gestures, clip }) {
+export function drawTableButton({ gestures, clip, samples }) {
   const button = byId("make-gestures");
   const clips = usable();
   button.hidden = !clips.length;
   const recognisable =
-    gestures?.gestures.length && clips.some(({ id, status }) => id === clip && status === "done");
-  const unused = withoutGesture(clips, gestures).length > 1;
-  button.classList.toggle("primary", unused && !recognisable);
+    gestures?.gestures.length &&
+    !gestures.sample &&
+    clips.some(({ id, status }) => id === clip && status === "done");
+  const own = clips.filter(({ name }) => !samples.some((sample) => sample.name === name));
+  const isNext = withoutGesture(own, gestures).length > 1 && !recognisable;
+  button.classList.toggle("primary", isNext);
+  byId("recognise").classList.toggle("primary", !isNext);
 }
 
 const rows = () =>
@@ -131,59 +139,44 @@ function change(key, values) {
 /** Keep what the user wrote and chose over a reload. */
 function remember() {
   const { edited, name, target } = onDisplay();
-  tabStore.write(KEPT, { edited: [...edited], name: name.value, target });
-}
-
-/** @param {GestureRow} row */
-function makeRow(row) {
-  const { key, clip } = row;
-  const box = h("input", {
-    type: "checkbox",
-    "aria-label": `Make a gesture of ${clip.name}`,
-    onchange: () => change(key, { chosen: box.checked }),
-  });
-  const label = h("input", {
-    type: "text",
-    className: "row-label",
-    autocomplete: "off",
-    "aria-label": `Label of ${clip.name}`,
-    "aria-describedby": `row-note-${key.replace(" ", "-")}`,
-    oninput: () => change(key, { label: label.value, chosen: true }),
-  });
-  return h(
-    "li",
-    { className: "gesture-row" },
-    box,
-    posterOf(clip),
-    h("div", { className: "row-clip" }, h("b", {}, clip.name), h("span", { className: "dim num" })),
-    limit(label, LONGEST_LABEL),
-    h("p", { className: "row-note", id: `row-note-${key.replace(" ", "-")}` }),
-  );
+  tabStore.write(KEPT, { edited: [...edited], name, target });
 }
 
 /**
- * Write what changed into a row; the field that is being typed in keeps its text and focus.
- *
  * @param {GestureRow} row
  * @param {string | undefined} problem
- * @param {HTMLElement | undefined} element
  */
-function drawRow(row, problem, element) {
-  const drawn = element ?? makeRow(row);
-  const [box, label] = drawn.querySelectorAll("input");
-  const [range, note] = [".row-clip span", ".row-note"].map((each) => drawn.querySelector(each));
-  if (!range || !note) return drawn;
-  box.checked = row.chosen;
-  if (label.value !== row.label) label.value = row.label;
-  label.setAttribute("aria-invalid", String(Boolean(problem)));
-  drawn.classList.toggle("left-out", !row.chosen);
-  range.textContent = row.takes
-    ? [rangeText(row), addedAt(row.clip)].filter(Boolean).join(" \u00b7 ")
-    : statusText(row.clip, state.jobs.get(row.clip.job_id));
-  const warning = row.chosen ? rangeWarning(row, heldName(state.gestures)) : "";
-  note.textContent = (row.chosen && problem) || warning || row.why || furtherNote(row);
-  note.classList.toggle("problem", Boolean(row.chosen && problem));
-  return drawn;
+function rowOf(row, problem) {
+  const { key, clip, chosen, label } = row;
+  const range = row.takes
+    ? [rangeText(row), addedAt(clip)].filter(Boolean).join(" \u00b7 ")
+    : statusText(clip, state.jobs.get(clip.job_id));
+  const warning = chosen ? rangeWarning(row, heldName(state.gestures)) : "";
+  const note = `row-note-${key.replace(" ", "-")}`;
+  const fault = chosen && problem;
+  const words = fault || warning || row.why || furtherNote(row);
+  return html`<li class="gesture-row ${chosen ? "" : "left-out"}">
+    <input
+      type="checkbox"
+      aria-label="Make a gesture of ${clip.name}"
+      .checked=${live(chosen)}
+      @change=${(/** @type {any} */ { target }) => change(key, { chosen: target.checked })}
+    />${guard([clip.id, clip.status], () => posterOf(clip))}
+    <div class="row-clip"><b>${clip.name}</b><span class="dim num">${range}</span></div>
+    <input
+      type="text"
+      class="row-label"
+      autocomplete="off"
+      aria-label="Label of ${clip.name}"
+      aria-describedby=${note}
+      aria-invalid=${Boolean(problem)}
+      .value=${live(label)}
+      ${limited(LONGEST_LABEL)}
+      @input=${(/** @type {any} */ { target }) =>
+        change(key, { label: target.value, chosen: true })}
+    />
+    <p class="row-note ${fault ? "problem" : ""}" id=${note} ?hidden=${!words}>${words}</p>
+  </li>`;
 }
 
 /** Draw once for all changes before the next repaint. */
@@ -198,21 +191,36 @@ function drawSoon() {
 
 function draw() {
   if (!table || !isOpen()) return;
-  const { best, list, name, note: line, refused, save: button, saving, target } = table;
+  const { name, refused, saving, target, older } = table;
   const all = rows();
   const { problems, note } = problemsOf(all);
-  reconcile(
-    list,
-    all,
-    ({ key }) => key,
-    (row, element) => drawRow(row, refused.get(row.key) ?? problems.get(row.key), element),
-  );
-  best.draw(candidatesOf(all).length);
   const chosen = all.filter((row) => row.chosen);
-  const unnamed = target === NEW && !name.value.trim();
-  line.textContent = unnamed ? "The new language has no name." : note;
-  button.textContent = `Save ${countOf(chosen.map(({ further }) => Boolean(further)))}`;
-  button.disabled = Boolean(saving || note || unnamed);
+  const unnamed = target === NEW && !name.trim();
+  render(
+    html`<h2 id="dialog-title">Make gestures of these clips</h2>
+      <p class="dim">
+        Each take between two ${heldName(state.gestures)}s becomes one gesture, under the name
+        beside it, or a further demonstration of one that the language has.
+      </p>
+      ${languageChoice()}
+      <ul class="gesture-rows" aria-label="Gestures to save">
+        ${repeat(
+          all,
+          ({ key }) => key,
+          (row) => rowOf(row, refused.get(row.key) ?? problems.get(row.key)),
+        )}
+      </ul>
+      ${older}${bestChoice(candidatesOf(all))}
+      <div class="dialog-actions">
+        <p class="dim" role="status">${unnamed ? "The new language has no name." : note}</p>
+        <span class="spacer"></span>
+        <button type="button" @click=${cancel}>Cancel</button>
+        <button type="submit" class="primary" data-writes ?disabled=${saving || note || unnamed}>
+          Save ${countOf(chosen.map(({ further }) => Boolean(further)))}
+        </button>
+      </div>`,
+    table.form,
+  );
 }
 
 /**
@@ -227,57 +235,64 @@ function countOf(further) {
   return parts.filter((_, index) => (index ? more : fresh || !more)).join(" and ");
 }
 
-/** The controls that leave the best rows selected, and tell by whose demonstrations. */
-function bestChoice() {
-  const count = h("input", { type: "number", min: "1", "aria-label": "Rows to keep" });
-  const of = h("span");
-  const note = h("p", { className: "dim", role: "status" });
-  const button = h("button", { type: "button" }, "Keep the best");
-  const element = h("div", { className: "keep-best" }, button, count, of, note);
-  let asking = false;
-  let typed = false;
-  count.oninput = () => {
-    typed = true;
+/**
+ * The number of rows to keep: as chosen, or three of five.
+ *
+ * @param {GestureRow[]} among
+ */
+const keepOf = (among) => onDisplay().keep ?? String(Math.round(0.6 * among.length));
+
+/**
+ * The controls that leave the best rows selected, and tell by whose demonstrations.
+ *
+ * @param {GestureRow[]} among
+ */
+function bestChoice(among) {
+  const { kept, comparing } = onDisplay();
+  const type = (/** @type {any} */ { target }) => {
+    onDisplay().keep = target.value;
   };
-  /** @param {number} size of the rows among which is chosen */
-  const draw = (size) => {
-    element.hidden = size < 2 || size > MOST_COMPARED;
-    of.textContent = `of ${size}`;
-    count.max = String(size);
-    if (!typed) count.value = String(Math.round(0.6 * size));
-    button.disabled = asking;
+  return html`<div class="keep-best" ?hidden=${among.length < 2 || among.length > MOST_COMPARED}>
+    <button type="button" ?disabled=${comparing} @click=${keepBest}>Keep the best</button>
+    <input
+      type="number"
+      min="1"
+      max=${among.length}
+      aria-label="Rows to keep"
+      .value=${live(keepOf(among))}
+      @input=${type}
+    /><span>of ${among.length}</span>
+    <p class="dim" role="status">${kept}</p>
+  </div>`;
+}
+
+async function keepBest() {
+  const shown = onDisplay();
+  const among = candidatesOf(rows());
+  const keep = Math.min(Math.max(1, Math.round(Number(keepOf(among)))), among.length);
+  const takes = {
+    keep,
+    language_id: shown.target === NEW ? null : shown.target,
+    gestures: among.map((row) => ({
+      ...draftOf(row),
+      label: (row.label.trim() || row.clip.name).slice(0, LONGEST_LABEL),
+    })),
   };
-  button.onclick = async () => {
-    const shown = onDisplay();
-    const among = candidatesOf(rows());
-    const keep = Math.min(Math.max(1, Math.round(Number(count.value))), among.length);
-    count.value = String(keep);
-    const takes = {
-      keep,
-      language_id: shown.target === NEW ? null : shown.target,
-      gestures: among.map((row) => ({
-        ...draftOf(row),
-        label: (row.label.trim() || row.clip.name).slice(0, LONGEST_LABEL),
-      })),
-    };
-    asking = typed = true;
-    note.textContent = "Comparing the takes.";
-    draw(among.length);
-    try {
-      const choice = await api.languages.choose(takes, shown.leaving.signal);
-      for (const [key, values] of choiceOf(among, choice))
-        shown.edited.set(key, { ...shown.edited.get(key), ...values });
-      remember();
-      note.textContent = choice.people;
-    } catch (error) {
-      note.textContent = "";
-      if (!shown.leaving.signal.aborted) refuse(shown, among, error, "Choosing the best");
-    } finally {
-      asking = false;
-      drawSoon();
-    }
-  };
-  return { element, draw };
+  Object.assign(shown, { keep: String(keep), comparing: true, kept: "Comparing the takes." });
+  draw();
+  try {
+    const choice = await api.languages.choose(takes, shown.leaving.signal);
+    for (const [key, values] of choiceOf(among, choice))
+      shown.edited.set(key, { ...shown.edited.get(key), ...values });
+    remember();
+    shown.kept = choice.people;
+  } catch (error) {
+    shown.kept = "";
+    if (!shown.leaving.signal.aborted) refuse(shown, among, error, "Choosing the best");
+  } finally {
+    shown.comparing = false;
+    drawSoon();
+  }
 }
 
 /**
@@ -346,10 +361,9 @@ async function save() {
   shown.saving = true;
   draw();
   try {
-    if (shown.target === NEW) await saveIntoNew(shown.name.value.trim(), drafts);
+    if (shown.target === NEW) await saveIntoNew(shown.name.trim(), drafts);
     else await saveInto(shown.target, drafts);
-    tabStore.set(KEPT, null);
-    byId("dialog").close();
+    cancel();
   } catch (error) {
     refuse(
       shown,
@@ -363,111 +377,77 @@ async function save() {
   }
 }
 
+const ownLanguages = () => state.languages.filter(({ sample }) => !sample);
+
 /** The choice of the language: one's own, or a new one. Samples stay as they are. */
 function languageChoice() {
-  const own = state.languages.filter(({ sample }) => !sample);
-  const kept = tabStore.read(KEPT);
-  const name = h("input", {
-    type: "text",
-    id: "table-name",
-    value: kept?.name ?? PROPOSED_NAME,
-    autocomplete: "off",
-    oninput: () => {
-      remember();
-      draw();
-    },
-  });
-  limit(name, LONGEST_NAME);
-  const nameRow = h(
-    "div",
-    { className: "field" },
-    h("label", { for: "table-name" }, "Name of the new language"),
-    name,
-  );
-  const select = h(
-    "select",
-    { id: "table-language" },
-    own.map((each) => h("option", { value: each.id }, each.name)),
-    h("option", { value: NEW }, "A new language"),
-  );
-  const first = own.find(({ id }) => id === (kept?.target ?? state.language));
-  select.value = kept?.target === NEW ? NEW : (first?.id ?? NEW);
-  select.onchange = async () => {
-    onDisplay().target = select.value;
-    nameRow.hidden = select.value !== NEW;
+  const { name, target } = onDisplay();
+  const pick = async (/** @type {any} */ { target: { value } }) => {
+    onDisplay().target = value;
     remember();
-    if (select.value !== NEW) await choose(select.value);
+    if (value !== NEW) await choose(value);
     draw();
     read();
   };
-  nameRow.hidden = select.value !== NEW;
-  const element = h(
-    "div",
-    { className: "table-language" },
-    h("div", { className: "field" }, h("label", { for: "table-language" }, "Save into"), select),
-    nameRow,
-  );
-  return { element, name, target: select.value, edited: new Map(kept?.edited) };
+  const rename = (/** @type {any} */ { target: { value } }) => {
+    onDisplay().name = value;
+    remember();
+    draw();
+  };
+  /** @type {[string, string][]} */
+  const options = ownLanguages().map((each) => [each.id, each.name]);
+  return html`<div class="table-language">
+    <div class="field">
+      <label for="table-language">Save into</label>
+      <select id="table-language" @change=${pick}>
+        ${optionsOf([...options, [NEW, "A new language"]], target)}
+      </select>
+    </div>
+    <div class="field" ?hidden=${target !== NEW}>
+      <label for="table-name">Name of the new language</label>
+      <input
+        type="text"
+        id="table-name"
+        autocomplete="off"
+        .value=${live(name)}
+        ${limited(LONGEST_NAME)}
+        @input=${rename}
+      />
+    </div>
+  </div>`;
 }
 
 function cancel() {
   tabStore.set(KEPT, null);
-  byId("dialog").close();
+  closeDialog();
 }
 
 /** Open the table with the clips of the library. */
 export function openGestureTable() {
-  const dialog = byId("dialog");
-  const { element, name, target, edited } = languageChoice();
-  const note = h("p", { className: "dim", role: "status" });
-  const list = h("ul", { className: "gesture-rows", "aria-label": "Gestures to save" });
-  const best = bestChoice();
-  const button = h("button", { type: "submit", className: "primary", ...WRITES });
+  const kept = tabStore.read(KEPT);
+  const first = ownLanguages().find(({ id }) => id === (kept?.target ?? state.language));
+  const leaving = new AbortController();
+  const form = h("form", { method: "dialog", className: "gesture-table", noValidate: true });
   table = {
-    best,
-    list,
-    note,
-    save: button,
-    name,
-    target,
-    edited,
+    form,
+    older: olderClipsButton(),
+    name: kept?.name ?? PROPOSED_NAME,
+    target: kept?.target === NEW ? NEW : (first?.id ?? NEW),
+    edited: new Map(kept?.edited),
     refused: new Map(),
     readings: new Map(),
     reads: "",
-    leaving: new AbortController(),
+    leaving,
+    keep: null,
+    kept: "",
+    comparing: false,
     saving: false,
   };
-  const form = h(
-    "form",
-    { method: "dialog", className: "gesture-table", noValidate: true },
-    h("h2", { id: "dialog-title" }, "Make gestures of these clips"),
-    h(
-      "p",
-      { className: "dim" },
-      `Each take between two ${heldName(state.gestures)}s becomes one gesture, under the name beside it, or a further demonstration of one that the language has.`,
-    ),
-    element,
-    list,
-    olderClipsButton(),
-    best.element,
-    h(
-      "div",
-      { className: "dialog-actions" },
-      note,
-      h("span", { className: "spacer" }),
-      h("button", { type: "button", onclick: cancel }, "Cancel"),
-      button,
-    ),
-  );
   form.onsubmit = (event) => {
     event.preventDefault();
-    if (!button.disabled) save();
+    if (!onDisplay().saving) save();
   };
-  dialog.replaceChildren(form);
-  dialog.setAttribute("aria-labelledby", "dialog-title");
-  const { leaving } = table;
-  dialog.onclose = () => leaving.abort();
-  dialog.showModal();
+  showDialog(form, () => leaving.abort());
   forgetFailures();
   const load = () => {
     loadTakesOfClips(isOpen, drawSoon);
@@ -479,5 +459,5 @@ export function openGestureTable() {
     follow(["clips", "jobs", "gestures"], draw);
   } else load();
   draw();
-  /** @type {HTMLElement | null} */ (list.querySelector(".row-label"))?.focus();
+  /** @type {HTMLElement | null} */ (form.querySelector(".row-label"))?.focus();
 }

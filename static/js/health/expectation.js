@@ -5,7 +5,7 @@ import { html, nothing } from "../templates.js";
 import { runTestSet } from "../languages/test-set.js";
 import { invitationsPart } from "./invitations.js";
 import { curvePart } from "./people-curve.js";
-import { rateText } from "./rates.js";
+import { rateText, testedText } from "./rates.js";
 
 /** @import { HealthReport, State, TestSet } from "../core/types.d.ts" */
 
@@ -18,13 +18,7 @@ const ENOUGH_PEOPLE = 3; // From which on a forecast is promised.
  */
 export function testWords(testSet) {
   if (!testSet?.overall.asked) return "";
-  const { right, asked, untestable, rate, low, high } = testSet.overall;
-  // A rate of a part of the takes would rise by what leaves the test.
-  const share =
-    rate === null || low === null || high === null || untestable
-      ? ""
-      : `, ${rateText({ rate, low, high })}`;
-  const apart = untestable ? `, ${untestable} cannot be tested` : "";
+  const { right, asked, untestable } = testSet.overall;
   const unread = testSet.takes.filter(({ testable, result }) => testable && !result).length;
   const older = testSet.waiting - unread;
   const notes = [
@@ -32,7 +26,7 @@ export function testWords(testSet) {
     older ? ` Not by revision ${testSet.revision}: ${plural(older, "take")}.` : "",
   ].join("");
   const all = asked + untestable;
-  return `Of the test set ${right} of ${all} takes are read right${share}${apart}.${notes}`;
+  return `Of the test set ${right} of ${all} takes are read right${testedText(testSet.overall)}.${notes}`;
 }
 
 /**

@@ -23,6 +23,7 @@ export const isCurrent = (health) =>
 export async function check() {
   const language = currentLanguage();
   const key = keyOf(language);
+  const { testSet } = state;
   const known = state.health?.id === language.id ? state.health : null;
   const base = {
     key,
@@ -39,6 +40,7 @@ export async function check() {
   try {
     const report = await api.languages.check(language.id, language.revision);
     settle({ status: "done", report, shown: language.revision });
+    if (state.testSet !== testSet) judgeAgain(state);
   } catch (error) {
     settle(
       error.code === "check_cancelled"
@@ -58,6 +60,8 @@ export function keepChecked({ view, gestures, health }) {
     check();
 }
 
+let judged = 0; // Number of verdicts that were asked for; only the last one is shown.
+
 /**
  * Take the verdict after a change of the test set; the server keeps the check itself.
  *
@@ -65,8 +69,12 @@ export function keepChecked({ view, gestures, health }) {
  */
 export async function judgeAgain({ view, health }) {
   if (view !== "health" || !health || !isCurrent(health) || health.status !== "done") return;
+  judged += 1;
+  const mine = judged;
   const report = await api.languages.check(health.id, health.revision).catch(() => null);
-  if (report && state.health === health) update({ health: { ...health, report } });
+  const { health: shown } = state;
+  if (report && mine === judged && shown?.key === health.key && shown.status === "done")
+    update({ health: { ...shown, report } });
 }
 
 /** Cancel the check that runs. */

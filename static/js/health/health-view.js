@@ -132,12 +132,6 @@ const section = (title, hint, content) =>
  * @param {TestSet | null} testSet
  */
 function drawReport(report, testSet) {
-  const shown = narrow(report);
-  const all = report.gestures.length;
-  const part = shown.length < all ? ` The ${shown.length} nearest of ${all} gestures.` : "";
-  const same = report.warnings
-    .filter(({ kind, gestures }) => kind === "duplicate" && gestures.length === 2)
-    .map(({ gestures }) => gestures);
   return [
     findingsList(report.warnings),
     section(
@@ -145,19 +139,33 @@ function drawReport(report, testSet) {
       "Takes that are read right come first, where there are any. Nearest gesture: the fused distance of the two demonstrations, 1 for two typical gestures. A far gesture may still be misread.",
       gestureTable(report, testSet, imageOf),
     ),
-    all > 1
-      ? section(
-          "Map",
-          `Similar gestures are close to each other.${same.length ? " Joined: gestures that cannot be told apart." : ""}${part}`,
-          languageMap({
-            points: shown,
-            same,
-            imageOf,
-            open: (label) => openNearest(report, label),
-          }),
-        )
-      : nothing,
   ];
+}
+
+/**
+ * All gestures by their distances; nothing of a single one.
+ *
+ * @param {HealthReport} report
+ */
+function drawMap(report) {
+  const shown = narrow(report);
+  const all = report.gestures.length;
+  const part = shown.length < all ? ` The ${shown.length} nearest of ${all} gestures.` : "";
+  const same = report.warnings
+    .filter(({ kind, gestures }) => kind === "duplicate" && gestures.length === 2)
+    .map(({ gestures }) => gestures);
+  return all > 1
+    ? section(
+        "Map",
+        `Similar gestures are close to each other.${same.length ? " Joined: gestures that cannot be told apart." : ""}${part}`,
+        languageMap({
+          points: shown,
+          same,
+          imageOf,
+          open: (label) => openNearest(report, label),
+        }),
+      )
+    : nothing;
 }
 
 const empty = () =>
@@ -238,7 +246,11 @@ function overview(state) {
     <div>${progress(state)}</div>
     ${expectation(state, report, testSet)}
     <div class="report ${stale}">${body || nothing}</div>
-    ${dialSection(state, report)}${batchSection(testSet)}`;
+    ${batchSection(testSet)}
+    <div class="report ${stale}">
+      ${guard([report, gestures], () => (report?.gestures.length ? drawMap(report) : nothing))}
+    </div>
+    ${dialSection(state, report)}`;
 }
 
 /** @type {any} */

@@ -2,6 +2,7 @@
 
 import * as api from "../core/api.js";
 import { copy } from "../core/clipboard.js";
+import { closeDialog, showDialog } from "../core/dialogs.js";
 import { byId } from "../core/dom.js";
 import { ago, dateAndTime, plural } from "../core/format.js";
 import { currentLanguage, state, update } from "../core/state.js";
@@ -130,9 +131,8 @@ function takeRow(invitation, take, settle) {
 
 /** @param {NewInvitation} made */
 function showLink({ link, qr, expires, most_takes: takes }) {
-  const dialog = byId("dialog");
   const warning = hindrance(link);
-  dialog.replaceChildren(
+  showDialog(
     elementOf(
       html`<div class="invitation-link">
         <h2 id="dialog-title">Let others scan this</h2>
@@ -149,7 +149,7 @@ function showLink({ link, qr, expires, most_takes: takes }) {
           ${dateAndTime(expires)}; nothing else. It is shown only now.
         </p>
         <div class="dialog-actions">
-          <button type="button" @click=${() => dialog.close()}>Close</button>
+          <button type="button" @click=${closeDialog}>Close</button>
           <button type="button" class="primary" @click=${() => copy(link, "Link copied", "")}>
             Copy the link
           </button>
@@ -174,7 +174,6 @@ const choice = (id, name, values, chosen) =>
   </div>`;
 
 function openForm() {
-  const dialog = byId("dialog");
   const { id, name } = currentLanguage();
   const counts = Array.from({ length: MAX_DEMONSTRATIONS - 1 }, (_, index) => index + 1);
   const numberOf = (/** @type {string} */ field) => Number(byId(field).value);
@@ -188,13 +187,13 @@ function openForm() {
       showLink(await api.invitations.make(id, limits));
       loadInvitations(state);
     } catch (error) {
-      const problem = dialog.querySelector(".field-problem");
+      const problem = button.form.querySelector(".field-problem");
       problem.textContent = error.message;
       problem.hidden = false;
       button.disabled = false;
     }
   };
-  dialog.replaceChildren(
+  showDialog(
     elementOf(
       html`<form @submit=${make}>
         <h2 id="dialog-title">Invite people to ${name}</h2>
@@ -210,15 +209,12 @@ function openForm() {
         )}
         <p class="field-problem" role="alert" hidden></p>
         <div class="dialog-actions">
-          <button type="button" @click=${() => dialog.close()}>Cancel</button>
+          <button type="button" @click=${closeDialog}>Cancel</button>
           <button type="submit" class="primary">Make the link</button>
         </div>
       </form>`,
     ),
   );
-  dialog.setAttribute("aria-labelledby", "dialog-title");
-  dialog.onclose = null;
-  dialog.showModal();
 }
 
 /**
@@ -242,8 +238,13 @@ export async function loadInvitations({ view, gestures }) {
  * @param {...ReceivedTake} takes
  */
 async function settle(language, invitation, status, ...takes) {
+  const other = status === "added" ? "removed" : "added";
+  const of = takes.length > 1 ? plural(takes.length, "take") : `Take of ${takes[0].label}`;
   try {
     for (const take of takes) await api.invitations.settle(language, invitation, take.id, status);
+    const back = () => settle(language, invitation, other, ...takes);
+    const label = other === "added" ? "Add it after all" : "Remove it again";
+    toast(`${of} ${status}`, takes[0].diver, { action: { label, run: back } });
   } catch (error) {
     complain(error, status === "added" ? "Adding the take" : "Removing the take");
   }

@@ -1,6 +1,6 @@
 // Rates as text.
 
-/** @import { LimitCosts, Rate, Replacement } from "../core/types.d.ts" */
+/** @import { LimitCosts, Rate, Replacement, TestSet } from "../core/types.d.ts" */
 
 /**
  * A rate in per cent, rounded half to even, as in the texts of the findings. A rate
@@ -31,6 +31,17 @@ export const intervalText = ({ low, high }) =>
 export function rateText(rate) {
   const interval = intervalText(rate);
   return `${percent(rate.rate)} %${interval && ` (${interval})`}`;
+}
+
+/**
+ * The rate of tested takes in words, or how many of them cannot be tested: the rate of a part of
+ * the takes would rise by what leaves the test.
+ *
+ * @param {Pick<TestSet["overall"], "untestable" | "rate" | "low" | "high">} share
+ */
+export function testedText({ untestable, rate, low, high }) {
+  if (untestable) return `, ${untestable} cannot be tested`;
+  return rate === null || low === null || high === null ? "" : `, ${rateText({ rate, low, high })}`;
 }
 
 /**

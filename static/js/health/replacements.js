@@ -3,7 +3,8 @@
 import { labelInName } from "../clips/clip-label.js";
 import { takesLanguage } from "../clips/salutes.js";
 import * as api from "../core/api.js";
-import { byId, h } from "../core/dom.js";
+import { closeDialog, showDialog } from "../core/dialogs.js";
+import { h } from "../core/dom.js";
 import { currentLanguage, state } from "../core/state.js";
 import { html, nothing, render } from "../templates.js";
 import { showDone } from "../core/undo.js";
@@ -72,7 +73,6 @@ function card(replacement, take) {
  * @param {[string, string]} labels
  */
 async function propose(labels) {
-  const dialog = byId("dialog");
   const language = currentLanguage();
   const leaving = new AbortController();
   /** @type {{ label: string, cards: unknown[] }[]} */
@@ -97,7 +97,7 @@ async function propose(labels) {
           )}
         </div>
         <div class="dialog-actions">
-          <button type="button" @click=${() => dialog.close()}>Cancel</button>
+          <button type="button" @click=${closeDialog}>Cancel</button>
         </div>`,
       form,
     );
@@ -105,7 +105,7 @@ async function propose(labels) {
   /** @param {any} error */
   const show = (error) => {
     if (leaving.signal.aborted) return;
-    if (error.code === "cancelled") dialog.close();
+    if (error.code === "cancelled") closeDialog();
     draw({ problem: error.message });
   };
   /**
@@ -126,7 +126,7 @@ async function propose(labels) {
         (base) => api.languages.replaceGesture(base, movement),
         { from: language },
       );
-      dialog.close();
+      closeDialog();
       showDone(`${label} has another movement`, gesture);
     } catch (error) {
       show(error);
@@ -135,10 +135,7 @@ async function propose(labels) {
     }
   };
   draw({ note: "Looking for other movements." });
-  dialog.replaceChildren(form);
-  dialog.setAttribute("aria-labelledby", "dialog-title");
-  dialog.onclose = () => leaving.abort();
-  dialog.showModal();
+  showDialog(form, () => leaving.abort());
   try {
     const takes = await spareTakes(language);
     let known = "";

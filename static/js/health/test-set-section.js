@@ -23,7 +23,7 @@ import {
 import { addLibraryClips, addTestClips, candidates, waitingClips } from "./test-set-clips.js";
 import { confusionGrid } from "./confusion-grid.js";
 import { pairName, pairOf } from "./finding-links.js";
-import { rateText } from "./rates.js";
+import { testedText } from "./rates.js";
 
 /** @import { TestSet } from "../core/types.d.ts" */
 
@@ -102,14 +102,6 @@ function download(takes) {
 }
 
 /**
- * A measured share in words; empty without takes.
- *
- * @param {TestSet["overall"]} share
- */
-const shareText = ({ rate, low, high }) =>
-  rate === null || low === null || high === null ? "" : `, ${rateText({ rate, low, high })}`;
-
-/**
  * How many takes were asked back, and of how many the right gesture is in the pair.
  *
  * @param {Pick<TestSet["overall"], "pairs" | "pairs_right">} share
@@ -128,7 +120,7 @@ const rates = ({ gestures, none }) =>
       (share) =>
         html`<li>
           <b>${share.label}</b> ${share.right} of
-          ${share.asked}${shareText(share)}${pairsText(share)}
+          ${share.asked}${testedText(share)}${pairsText(share)}
         </li>`,
     )}
     ${
@@ -201,16 +193,14 @@ function runControl({ waiting }) {
 function summary(testSet, takes) {
   const { overall, waiting, upgraded } = testSet;
   const change = changeWords(testSet);
-  const counted = html`<b class="num">${overall.right} of ${overall.asked}</b> recognised as
-    labelled${shareText(overall)}${pairsText(overall)}`;
+  const counted = html`<b class="num">${overall.right} of ${overall.asked + overall.untestable}</b>
+    recognised as labelled${testedText(overall)}${pairsText(overall)}`;
   const older = html`<span class="dim"
     >, ${plural(waiting, "take")} not by the newest revision</span
   >`;
   return html`<div class="test-summary">
     <p>
-      ${overall.asked ? counted : "Nothing is recognised yet"}${
-        change ? `; since the revision before: ${change}` : ""
-      }${
+      ${overall.asked ? counted : "Nothing is recognised yet"}${change && `; ${change}`}${
         upgraded ? ". The program was upgraded in between, which may change answers too" : ""
       }${waiting ? older : ""}
     </p>

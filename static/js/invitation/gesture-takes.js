@@ -1,28 +1,27 @@
 // The gestures to show, one after the other: each take is recorded or chosen, sent, and answered.
 
+import { howTo, isSlow, situation } from "../camera/take-steps.js";
 import { cameraPossible } from "../camera/video-source.js";
-import { h } from "../core/dom.js";
+import { html, nothing, render } from "../templates.js";
 import { takeCamera } from "./take-camera.js";
 import { answerTake, findJudged, sendTake } from "./take-sending.js";
 
 /** @import { Invited, InvitedGesture } from "../core/types.d.ts" */
 
 /**
+ * `picture` is the address of the take that was sent, until it is answered for good.
+ *
  * @typedef {"open" | "sending" | "waiting" | "asked" | "held" | "added" | "removed" | "returned" | "failed"} Standing
- * @typedef {{ gesture: InvitedGesture, standing: Standing, reason: string, id: string, share: number, file: File | null, cancel: (() => void) | null }} Entry
+ * @typedef {{ gesture: InvitedGesture, standing: Standing, reason: string, id: string, share: number, file: File | null, picture: string, cancel: (() => void) | null }} Entry
  * @typedef {{ kept: { name: string, takes: Record<string, string> }, write: () => void }} Memory
  */
 
 const SHOW_MS = 4000; // for a look at a take before it is sent by itself
 const LONGEST = 20; // seconds of a recording
+/** @type {Record<string, number>} */
 const AROUND = { salute: 6, pose: 7, gesture: 4, none: 4 }; // seconds before and after the gesture
 
-const HOW_TO = {
-  salute: "Hold a Vulcan salute, show the gesture, salute again.",
-  pose: "Hold the starting pose of the arms, show the gesture, hold the closing pose.",
-  gesture: "Stand still, show the gesture, stand still.",
-  none: "Stand still, show the gesture, stand still.",
-};
+const SLOW = "Few pictures a second arrive. Press Done after the gesture.";
 
 /** @type {Record<Standing, string>} */
 const WORDS = {
@@ -40,12 +39,16 @@ const WORDS = {
 const DONE = ["held", "added", "removed"]; // Nothing more is to be done by who shows.
 const TO_SHOW = ["asked", "open", "returned", "failed"];
 
-/** @param {Entry} entry */
-const wordOf = ({ standing, share }) =>
-  standing === "sending" ? `${WORDS.sending}, ${Math.round(100 * share)} %` : WORDS[standing];
-
 /** @param {string} text */
 export const capital = (text) => text.charAt(0).toUpperCase() + text.slice(1);
+
+/**
+ * @param {string} words
+ * @param {() => unknown} run
+ * @param {string} [look]
+ */
+const button = (words, run, look = "") =>
+  html`<button type="button" class=${look} @click=${run}>${words}</button>`;
 
 /**
  * Show the gestures of a language one after the other, and send the takes.
@@ -63,10 +66,16 @@ export function showGestures(root, invited, memory) {
     id: "",
     share: 0,
     file: null,
+    picture: "",
     cancel: null,
   }));
+  // A take shows one gesture, also where gestures are a trigger.
+  const instructions = howTo(invited.trigger === "gesture" ? "none" : invited.trigger);
   let current = entries[0];
   let handsFree = false;
+  /** @type {{ words: string, actions: unknown, note: string }} what the camera asks for */
+  let prompt = { words: "", actions: nothing, note: "" };
+  let preview = ""; // the address of a take on display before it is sent
   /** @type {AbortController | null} */
   let taking = null; // the take before the camera
   let wake = () => {}; // called when something has changed
@@ -76,29 +85,6 @@ export function showGestures(root, invited, memory) {
       wake = () => resolve(null);
     });
 
-  const figure = h("img", { className: "figure", width: 224, height: 224, alt: "" });
-  const label = h("h2");
-  const description = h("p", { className: "dim description" });
-  const step = h("p", { className: "step", role: "status" });
-  const reason = h("p", { className: "reason", role: "alert", hidden: true });
-  const view = h("p", { className: "dim view-of-drawings" }, "Drawn as in a mirror.");
-  const asked = h(
-    "div",
-    { className: "shown" },
-    figure,
-    h("div", {}, label, view, description, reason),
-  );
-  const card = h("section", { className: "card" });
-  const preview = h("video", {
-    className: "preview",
-    muted: true,
-    playsInline: true,
-    hidden: true,
-  });
-  const actions = h("div", { className: "actions" });
-  const list = h("ul", { className: "gestures", "aria-label": "Gestures" });
-  const sum = h("p", { className: "sum", role: "status" });
-  const bar = h("progress", { max: entries.length, value: 0, "aria-label": "Gestures added" });
   const camera = takeCamera({ ended: () => endHandsFree(), again: () => beginHandsFree() });
 
   const standingAt = (/** @type {Standing} */ wanted) =>
@@ -107,6 +93,7 @@ export function showGestures(root, invited, memory) {
   const next = () => standingAt("asked") ?? standingAt("open") ?? standingAt("returned");
   const busy = () =>
     entries.some(({ standing }) => standing === "sending" || standing === "waiting");
+  const countAdded = () => entries.filter(({ standing }) => standing === "added").length;
 
   /**
    * @param {Entry} entry
@@ -114,9 +101,21 @@ export function showGestures(root, invited, memory) {
    */
   function put(entry, change) {
     Object.assign(entry, change);
-    drawList();
-    if (entry === current && !taking) drawCurrent();
+    if (DONE.includes(entry.standing)) URL.revokeObjectURL(entry.picture);
+    draw();
     wake();
+  }
+
+  /**
+   * Say what comes before the camera, and show the buttons for it.
+   *
+   * @param {string} words
+   * @param {unknown[]} actions
+   * @param {string} [note]
+   */
+  function say(words, actions, note = "") {
+    prompt = { words, actions, note };
+    draw();
   }
 
   /**
@@ -146,23 +145,14 @@ export function showGestures(root, invited, memory) {
   }
 
   /**
-   * The buttons that answer whether a take is the gesture.
+   * The buttons that answer whether a take is the gesture; none is recommended.
    *
    * @param {Entry} entry
    */
-  const answers = (entry) => {
-    const answer = (/** @type {string} */ words, /** @type {boolean} */ confirmed) =>
-      h(
-        "button",
-        {
-          type: "button",
-          className: confirmed ? "primary" : "",
-          onclick: () => follow(entry, entry.id, confirmed),
-        },
-        words,
-      );
-    return [answer("Yes, it is", true), answer("Show it again", false)];
-  };
+  const answers = (entry) => [
+    button("Yes, it is", () => follow(entry, entry.id, true)),
+    button("Show it again", () => follow(entry, entry.id, false)),
+  ];
 
   /**
    * Send a clip as the take of a gesture.
@@ -180,19 +170,16 @@ export function showGestures(root, invited, memory) {
       });
       return;
     }
-    const progress = (/** @type {number} */ share) => {
-      entry.share = share;
-      // In place, so that the button beside it can be pressed.
-      const word = list.children[entries.indexOf(entry)]?.querySelector("span");
-      if (word && entry.standing === "sending") word.textContent = wordOf(entry);
-    };
+    const progress = (/** @type {number} */ share) => put(entry, { share });
     const diver = memory.kept.name;
     const { answer, cancel } = sendTake({ label: entry.gesture.label, diver, file, progress });
+    URL.revokeObjectURL(entry.picture);
     put(entry, {
       standing: "sending",
       reason: "",
       share: 0,
       file,
+      picture: URL.createObjectURL(file),
       cancel: () => {
         cancel();
         put(entry, { standing: "open", file: null, cancel: null });
@@ -217,93 +204,137 @@ export function showGestures(root, invited, memory) {
     if (taking || handsFree) return;
     const stays = TO_SHOW.includes(current.standing) ? current : null;
     current = standingAt("asked") ?? stays ?? next() ?? standingAt("failed") ?? current;
-    drawCurrent();
-    drawList();
+    draw();
   }
 
   /** @param {Entry} entry */
   function choose(entry) {
     if (handsFree) return;
     current = entry;
-    drawCurrent();
-    drawList();
+    draw();
     root.scrollIntoView({ block: "start" });
   }
 
   /** @param {Entry} entry */
   function row(entry) {
-    const { gesture, standing, cancel, reason: why } = entry;
-    const shows = TO_SHOW.includes(standing);
-    return h(
-      "li",
-      {
-        className: `gesture ${standing}`,
-        "aria-current": entry === current && !DONE.includes(standing) ? "true" : "false",
-      },
-      h("img", { src: gesture.image, width: 44, height: 44, alt: "" }),
-      h(
-        "div",
-        {},
-        shows && !handsFree
-          ? h(
-              "button",
-              { type: "button", className: "link", onclick: () => choose(entry) },
-              gesture.label,
-            )
-          : h("b", {}, gesture.label),
-        h("span", {}, wordOf(entry)),
-        why ? h("span", { className: "dim" }, why) : null,
-      ),
-      cancel ? h("button", { type: "button", onclick: cancel }, "Cancel") : null,
-    );
-  }
-
-  function drawList() {
-    const added = entries.filter(({ standing }) => standing === "added").length;
-    bar.value = added;
-    const words = `${added} of ${entries.length} added`;
-    if (sum.textContent !== words) sum.textContent = words;
-    list.replaceChildren(...entries.map(row));
+    const { gesture, standing, share, cancel, reason: why } = entry;
+    const sent = standing === "sending" ? `, ${Math.round(100 * share)} %` : "";
+    return html`<li
+      class="gesture ${standing}"
+      aria-current=${entry === current && !DONE.includes(standing)}
+    >
+      <img src=${gesture.image} width="44" height="44" alt="" />
+      <div>
+        ${
+          TO_SHOW.includes(standing) && !handsFree
+            ? button(gesture.label, () => choose(entry), "link")
+            : html`<b>${gesture.label}</b>`
+        }<span>${WORDS[standing]}${sent}</span>${why ? html`<span class="dim">${why}</span>` : nothing}
+      </div>
+      ${cancel ? button("Cancel", cancel) : nothing}
+    </li>`;
   }
 
   /**
-   * The ways to a clip of a gesture without the live camera.
+   * A way to a clip of a gesture without the live camera.
+   *
+   * @param {Entry} entry
+   * @param {string} words
+   * @param {unknown} capture
+   */
+  function fileInput(entry, words, capture) {
+    const take = (/** @type {any} */ { target }) => {
+      const [file] = target.files;
+      if (file) send(entry, file);
+      target.value = "";
+    };
+    return html`<label class="button"
+      >${words}<input
+        type="file"
+        accept="video/*"
+        class="visually-hidden"
+        capture=${capture}
+        @change=${take}
+    /></label>`;
+  }
+
+  /**
+   * The gesture to show, or the take of it that is asked about.
    *
    * @param {Entry} entry
    */
-  function fileInputs(entry) {
-    const choice = (/** @type {string} */ words, /** @type {Record<string, any>} */ more) => {
-      const input = h("input", {
-        type: "file",
-        accept: "video/*",
-        className: "visually-hidden",
-        ...more,
-      });
-      input.onchange = () => {
-        const [file] = input.files ?? [];
-        if (file) send(entry, file);
-        input.value = "";
-      };
-      return h("label", { className: "button" }, words, input);
-    };
-    return [choice("Record with the phone", { capture: "user" }), choice("Choose a clip", {})];
+  function shown({ gesture, standing, reason }) {
+    const why = DONE.includes(standing) ? "" : reason;
+    return html`<div class="shown">
+      <img
+        class="figure"
+        src=${gesture.image}
+        width="224"
+        height="224"
+        alt="The drawing of ${gesture.label}, from the dot along the arrow"
+      />
+      <div>
+        <h2>${gesture.label}</h2>
+        <p class="dim view-of-drawings">Drawn as in a mirror.</p>
+        <p class="dim description">${gesture.description}</p>
+        <p class="reason" role="alert" ?hidden=${!why}>${why}</p>
+      </div>
+    </div>`;
   }
 
-  function drawCurrent() {
-    const { gesture, standing, reason: why } = current;
-    figure.src = gesture.image;
-    figure.alt = `The drawing of ${gesture.label}, from the dot along the arrow`;
-    label.textContent = gesture.label;
-    description.textContent = gesture.description;
-    reason.hidden = !why || DONE.includes(standing);
-    reason.textContent = why;
-    card.classList.toggle("live", handsFree);
-    if (handsFree) return;
+  /** A take of a moment ago: before it is sent, or while it is asked about. */
+  function lastTake() {
+    const address = preview || (current.standing === "asked" && current.picture);
+    return address
+      ? html`<video
+          class="preview"
+          .muted=${true}
+          autoplay
+          loop
+          playsinline
+          aria-label="Your take of ${current.gesture.label}"
+          src=${address}
+        ></video>`
+      : nothing;
+  }
+
+  function draw() {
     const done = !next() && !standingAt("failed");
-    asked.hidden = done;
-    step.textContent = stepWords(done);
-    if (standing === "asked") actions.replaceChildren(...answers(current));
-    else actions.replaceChildren(...(done ? [] : waysToShow(current)));
+    const { words, actions, note } = handsFree
+      ? prompt
+      : { words: stepWords(done), actions: done ? nothing : waysToShow(current), note: "" };
+    render(
+      html`<header>
+          <h1>${invited.language}</h1>
+          <p class="sum" role="status">${countAdded()} of ${entries.length} added</p>
+          <progress
+            max=${entries.length}
+            value=${countAdded()}
+            aria-label="Gestures added"
+          ></progress>
+        </header>
+        <section
+          class="card ${handsFree ? "live" : ""}"
+          @dragover=${(/** @type {Event} */ event) => event.preventDefault()}
+          @drop=${drop}
+        >
+          ${done && !handsFree ? nothing : shown(current)}${camera.element}${lastTake()}
+          <p class="step" role="status">${words}</p>
+          <p class="dim" ?hidden=${!note}>${note}</p>
+          <div class="actions">${actions}</div>
+        </section>
+        <ul class="gestures" aria-label="Gestures">
+          ${entries.map(row)}
+        </ul>`,
+      root,
+    );
+  }
+
+  /** @param {DragEvent} event */
+  function drop(event) {
+    event.preventDefault();
+    const [file] = event.dataTransfer?.files ?? [];
+    if (file && !handsFree) send(current, file);
   }
 
   /**
@@ -312,37 +343,31 @@ export function showGestures(root, invited, memory) {
    * @param {boolean} done
    */
   function stepWords(done) {
-    const added = entries.filter(({ standing }) => standing === "added").length;
     if (entries.every(({ standing }) => DONE.includes(standing)))
-      return `All gestures are ${added === entries.length ? "added" : "shown"}. Thank you! You can close this page.`;
+      return `All gestures are ${countAdded() === entries.length ? "added" : "shown"}. Thank you! You can close this page.`;
     if (done) return "All gestures are shown. Wait for the answers.";
-    return current.standing === "asked" ? "Please answer." : HOW_TO[invited.trigger];
+    return current.standing === "asked" ? "Please answer." : instructions;
   }
 
   /**
-   * The buttons that show a gesture.
+   * The buttons that show a gesture, or answer the question about it.
    *
    * @param {Entry} entry
    */
   function waysToShow(entry) {
     const { standing, file } = entry;
-    const retry =
+    if (standing === "asked") return answers(entry);
+    const first =
       standing === "failed" && file
-        ? h(
-            "button",
-            { type: "button", className: "primary", onclick: () => send(entry, file) },
-            "Send again",
-          )
-        : null;
-    const live =
-      cameraPossible() && !retry
-        ? h(
-            "button",
-            { type: "button", className: "primary", onclick: beginHandsFree },
-            "Show hands-free",
-          )
-        : null;
-    return [retry, live, ...fileInputs(entry)].filter((each) => each !== null);
+        ? button("Send again", () => send(entry, file), "primary")
+        : cameraPossible()
+          ? button("Show hands-free", beginHandsFree, "primary")
+          : nothing;
+    return [
+      first,
+      fileInput(entry, "Record with the phone", "user"),
+      fileInput(entry, "Choose a clip", nothing),
+    ];
   }
 
   /**
@@ -352,56 +377,40 @@ export function showGestures(root, invited, memory) {
    * @param {AbortSignal} signal
    */
   function approve(file, signal) {
-    const address = URL.createObjectURL(file);
-    preview.src = address;
-    preview.hidden = false;
+    preview = URL.createObjectURL(file);
     camera.element.hidden = true;
-    preview.play().catch(() => {}); // A browser that plays nothing by itself still sends it.
-    step.textContent = "This is sent in a moment.";
     return new Promise((/** @type {(approved: boolean) => void} */ resolve) => {
       const finish = (/** @type {boolean} */ approved) => {
         clearTimeout(timer);
-        preview.hidden = true;
-        preview.removeAttribute("src");
-        URL.revokeObjectURL(address);
+        URL.revokeObjectURL(preview);
+        preview = "";
         camera.element.hidden = false;
         resolve(approved);
       };
       const timer = setTimeout(() => finish(true), SHOW_MS);
       signal.addEventListener("abort", () => finish(false), { once: true });
-      actions.replaceChildren(
-        h(
-          "button",
-          { type: "button", className: "primary", onclick: () => finish(true) },
-          "Send now",
-        ),
-        h("button", { type: "button", onclick: () => finish(false) }, "Show it again"),
+      say("This is sent in a moment.", [
+        button("Send now", () => finish(true), "primary"),
+        button("Show it again", () => finish(false)),
         stopButton(),
-      );
+      ]);
     });
   }
 
-  const stopButton = () => h("button", { type: "button", onclick: () => endHandsFree() }, "Stop");
+  const stopButton = () => button("Stop", () => endHandsFree());
 
   /** @param {Entry} entry */
   async function takeOne(entry) {
     current = entry;
-    drawList();
     taking = new AbortController();
-    drawCurrent();
-    actions.replaceChildren(stopButton());
-    const seconds = Math.min(
-      LONGEST,
-      Math.ceil(entry.gesture.seconds ?? 2) + AROUND[invited.trigger],
-    );
+    const { label, seconds: length } = entry.gesture;
     const { trigger } = invited;
-    const file = await camera.take({ seconds, trigger, signal: taking.signal }, (at) => {
-      const ready = at === "ready";
-      step.textContent = ready
-        ? `Next: ${entry.gesture.label}. Step back.`
-        : HOW_TO[invited.trigger];
-      const done = h("button", { type: "button", onclick: () => taking?.abort("done") }, "Done");
-      actions.replaceChildren(...(ready ? [stopButton()] : [done, stopButton()]));
+    const seconds = Math.min(LONGEST, Math.ceil(length ?? 2) + AROUND[trigger]);
+    const done = button("Done", () => taking?.abort("done"));
+    const file = await camera.take({ seconds, trigger, signal: taking.signal }, (at, seen) => {
+      if (at === "ready") return say(`Next: ${label}. Step back.`, [stopButton()]);
+      const [, words] = seen ? situation(seen, trigger) : ["", instructions];
+      return say(words, [done, stopButton()], seen && isSlow(seen) ? SLOW : "");
     });
     taking = handsFree ? new AbortController() : null;
     const wanted = file && taking && (await approve(file, taking.signal));
@@ -412,31 +421,26 @@ export function showGestures(root, invited, memory) {
   /** Show the gestures one after the other before the camera, the chosen one first. */
   async function beginHandsFree() {
     let chosen = TO_SHOW.includes(current.standing) ? current : null;
-    actions.replaceChildren();
-    step.textContent = "Starting the camera.";
-    if (!(await camera.start())) return drawCurrent();
     handsFree = true;
+    say("Starting the camera.", []);
+    if (!(await camera.start())) return endHandsFree();
     const awake = await navigator.wakeLock?.request("screen").catch(() => null);
     while (handsFree) {
       const entry = chosen ?? next();
       chosen = null;
       if (entry?.standing === "asked") {
         current = entry;
-        drawCurrent();
-        step.textContent = "Please answer.";
-        actions.replaceChildren(...answers(entry), stopButton());
+        say("Please answer.", [answers(entry), stopButton()]);
         await changed();
       } else if (entry) await takeOne(entry);
       else if (!busy()) break;
       else {
-        step.textContent = "All gestures are shown. Wait for the answers.";
-        actions.replaceChildren(stopButton());
+        say("All gestures are shown. Wait for the answers.", [stopButton()]);
         await changed();
       }
     }
     await awake?.release();
-    endHandsFree();
-    return undefined;
+    return endHandsFree();
   }
 
   function endHandsFree() {
@@ -445,23 +449,13 @@ export function showGestures(root, invited, memory) {
     taking = null;
     camera.stop();
     wake();
-    drawList();
     advance();
   }
 
-  card.append(asked, camera.element, preview, step, actions);
-  card.ondragover = (event) => event.preventDefault();
-  card.ondrop = (event) => {
-    event.preventDefault();
-    const [file] = event.dataTransfer?.files ?? [];
-    if (file && !handsFree) send(current, file);
-  };
-  root.replaceChildren(h("header", {}, h("h1", {}, invited.language), sum, bar), card, list);
   addEventListener("pagehide", camera.stop);
   for (const entry of entries) {
     const known = memory.kept.takes[entry.gesture.label];
     if (known) follow(entry, known);
   }
-  drawList();
   advance();
 }

@@ -1,8 +1,7 @@
 // The page of an invited person: what the invitation is, and who shows.
 
 import { browserStore } from "../core/browser-store.js";
-import { h } from "../core/dom.js";
-import { limit } from "../core/text-limit.js";
+import { html, limited, nothing, render } from "../templates.js";
 import { capital, showGestures } from "./gesture-takes.js";
 import { findInvited } from "./take-sending.js";
 
@@ -15,17 +14,16 @@ const root = /** @type {HTMLElement} */ (document.getElementById("invitation"));
 /**
  * @param {string} title
  * @param {string} text
- * @param {...Node} more
+ * @param {unknown} [more]
  */
-const notice = (title, text, ...more) =>
-  root.replaceChildren(
-    h(
-      "div",
-      { className: "notice", role: "status" },
-      h("h1", {}, title),
-      h("p", {}, text),
-      ...more,
-    ),
+const notice = (title, text, more = nothing) =>
+  render(
+    html`<div class="notice" role="status">
+      <h1>${title}</h1>
+      <p>${text}</p>
+      ${more}
+    </div>`,
+    root,
   );
 
 /** @type {Record<string, string>} */
@@ -41,7 +39,7 @@ async function open() {
     invited = await findInvited();
   } catch (error) {
     const title = TITLES[error.code] ?? error.title;
-    const again = h("button", { type: "button", className: "primary", onclick: open }, "Try again");
+    const again = html`<button type="button" class="primary" @click=${open}>Try again</button>`;
     notice(title, capital(error.message), again);
     return;
   }
@@ -69,47 +67,44 @@ function memoryOf({ id }) {
 /** @param {Invited} invited */
 function askName(invited) {
   const memory = memoryOf(invited);
-  const input = limit(
-    h("input", {
-      type: "text",
-      id: "name",
-      value: memory.kept.name,
-      autocomplete: "nickname",
-      required: true,
-    }),
-    LONGEST_NAME,
-  );
-  const count = invited.gestures.length;
-  const form = h(
-    "form",
-    { className: "notice" },
-    h("h1", {}, `Show the gestures of ${invited.language}`),
-    h(
-      "p",
-      {},
-      `${count === 1 ? "One gesture" : `${count} gestures`}, each once. So the robot learns how other people show them.`,
-    ),
-    h("label", { for: "name" }, "Your name, or any other word for you"),
-    input,
-    h("button", { type: "submit", className: "primary" }, "Begin"),
-    h(
-      "p",
-      { className: "dim" },
-      "Whoever invited you keeps your clips under this name. Nobody else who has the link sees them.",
-    ),
-  );
-  form.onsubmit = (event) => {
+  const field = () => /** @type {HTMLInputElement} */ (document.getElementById("name"));
+  const begin = (/** @type {SubmitEvent} */ event) => {
     event.preventDefault();
-    const name = input.value.trim();
-    if (!name) return input.focus();
+    const name = field().value.trim();
+    if (!name) return field().focus();
     if (name !== memory.kept.name) memory.kept.takes = {};
     memory.kept.name = name;
     memory.write();
     return showGestures(root, invited, memory);
   };
-  root.replaceChildren(form);
-  input.focus();
+  const count = invited.gestures.length;
+  render(
+    html`<form class="notice" @submit=${begin}>
+      <h1>Show the gestures of ${invited.language}</h1>
+      <p>
+        ${count === 1 ? "One gesture" : `${count} gestures`}, each once. So the robot learns how
+        other people show them.
+      </p>
+      <label for="name">Your name, or any other word for you</label>
+      <input
+        type="text"
+        id="name"
+        .value=${memory.kept.name}
+        autocomplete="nickname"
+        required
+        ${limited(LONGEST_NAME)}
+      />
+      <button type="submit" class="primary">Begin</button>
+      <p class="dim">
+        Whoever invited you keeps your clips under this name. Nobody else who has the link sees
+        them.
+      </p>
+    </form>`,
+    root,
+  );
+  field().focus();
 }
 
+root.replaceChildren(); // The note for browsers without JavaScript.
 addEventListener("hashchange", open);
 open();

@@ -13,10 +13,10 @@ import {
   watchFrames,
   whyNoCamera,
 } from "../camera/video-source.js";
-import { h } from "../core/dom.js";
+import { elementOf, html } from "../templates.js";
 import { token } from "./take-sending.js";
 
-/** @import { Recognized } from "../camera/live-messages.d.ts" */
+/** @import { Recognized, Seen } from "../camera/live-messages.d.ts" */
 
 const INSTEAD = "record with the phone\u2019s own camera, or choose a clip";
 const SECONDS_BEFORE = 5; // to step back from the phone
@@ -43,18 +43,25 @@ function sound(kind) {
 
 /**
  * Let the server look for the end of a take before the camera; it may have no place to look.
+ * `seen()` gets what it sees of the recording.
  *
  * @param {HTMLVideoElement} video
  * @param {string} trigger
+ * @param {(answer: Seen) => void} seen
  */
-function watchTake(video, trigger) {
+function watchTake(video, trigger, seen) {
   const look = { over: false, watching: true, begin: () => {}, stop: () => {} };
   const end = takeEnd(() => {
     look.over = true;
   });
+  /** @type {(() => void) | null} */
+  let stopFrames = null;
   const link = openLink(
     {
-      seen: end.seen,
+      seen: (answer) => {
+        end.seen(answer);
+        if (stopFrames) seen(answer);
+      },
       recognized: (/** @type {Recognized} */ result) => end.recognized(result, trigger),
       listening: () => {},
       ended: () => {
@@ -67,12 +74,11 @@ function watchTake(video, trigger) {
   // The server's first look takes longest: it is over when the recording begins. No more pictures
   // before: a salute in the countdown is no part of the recording.
   void link.opened.then(() => send(video.currentTime, performance.now() / 1000));
-  let stopFrames = () => {};
   look.begin = () => {
     stopFrames = watchFrames(video, send);
   };
   look.stop = () => {
-    stopFrames();
+    stopFrames?.();
     link.close();
     end.reset();
   };
@@ -85,22 +91,15 @@ function watchTake(video, trigger) {
  * @param {{ ended: () => void, again: () => void }} options
  */
 export function takeCamera({ ended, again }) {
-  const video = h("video", {
-    muted: true,
-    playsInline: true,
-    "aria-label": "What the camera sees",
-  });
-  const count = h("p", { className: "count", "aria-hidden": "true", hidden: true });
-  const left = h("progress", { "aria-label": "Recording", max: 1, value: 0, hidden: true });
-  const trouble = h("div", { className: "camera-problem", role: "alert", hidden: true });
-  const element = h(
-    "div",
-    { className: "picture mirrored", hidden: true },
-    video,
-    count,
-    left,
-    trouble,
+  const element = elementOf(
+    html`<div class="picture mirrored" hidden>
+      <video .muted=${true} playsinline aria-label="What the camera sees"></video>
+      <p class="count" aria-hidden="true" hidden></p>
+      <progress aria-label="Recording" max="1" value="0" hidden></progress>
+      <div class="camera-problem" role="alert" hidden></div>
+    </div>`,
   );
+  const [video, count, left, trouble] = /** @type {any} */ (element.children);
 
   function stop() {
     release(video);
@@ -133,7 +132,7 @@ export function takeCamera({ ended, again }) {
    * drops it if its reason is "drop".
    *
    * @param {{ seconds: number, trigger: string, signal: AbortSignal }} wanted
-   * @param {(step: "ready" | "recording") => void} step
+   * @param {(step: "ready" | "recording", seen?: Seen) => void} step told again of what is seen
    */
   async function take({ seconds, trigger, signal }, step) {
     step("ready");
@@ -142,7 +141,7 @@ export function takeCamera({ ended, again }) {
       count.textContent = number === null ? "" : String(number);
       if (number !== null && number <= 3) sound("tick");
     };
-    const look = watchTake(video, trigger); // The server takes its time to begin.
+    const look = watchTake(video, trigger, (seen) => step("recording", seen)); // The server takes its time to begin.
     const ready = await countDown(SECONDS_BEFORE, show, signal);
     const { srcObject } = video;
     if (!ready || !(srcObject instanceof MediaStream)) {

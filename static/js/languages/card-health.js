@@ -12,7 +12,8 @@ const reports = new Map(); // by language and revision; null: there is none
 /** @type {Set<string>} */
 const seen = new Set(); // languages whose cards are on display
 let offered = true; // false once the server turned out to have no such report
-let asking = false;
+let asking = ""; // the key of the report that is requested
+let outdated = false; // whether a test has changed the verdict since
 let draw = () => {};
 
 /** @param {LanguageSummary} language */
@@ -44,15 +45,17 @@ async function next() {
     (each) => seen.has(each.id) && each.labels.length && !reports.has(keyOf(each)),
   );
   if (asking || !language || !offered) return;
-  asking = true;
+  asking = keyOf(language);
+  outdated = false;
   try {
-    reports.set(keyOf(language), await api.languages.check(language.id, language.revision));
+    const report = await api.languages.check(language.id, language.revision);
+    if (!outdated) reports.set(keyOf(language), report);
   } catch (error) {
     // A card may stay without a report; a deleted language's card is about to disappear.
     reports.set(keyOf(language), null);
     if (error.status === 404) offered = false;
   }
-  asking = false;
+  asking = "";
   draw();
   next();
 }
@@ -68,8 +71,11 @@ const watch = new IntersectionObserver((entries) => {
 
 // A test of the language changes the verdict on it.
 follow(["labelled"], ({ labelled }) => {
-  if (labelled)
-    for (const key of reports.keys()) if (key.startsWith(`${labelled.id} `)) reports.delete(key);
+  if (!labelled) return;
+  const isOf = (/** @type {string} */ key) => key.startsWith(`${labelled.id} `);
+  outdated ||= isOf(asking);
+  for (const key of reports.keys()) if (isOf(key)) reports.delete(key);
+  next();
 });
 
 /**

@@ -22,7 +22,8 @@ export const FACTORS = [0, 0.25, 0.5, 1, 2, 4];
 /** @type {Record<Language["profile"], string>} */
 const PROFILE_WORDS = {
   full: "Whole movements, weighted distances; movements that are no gesture are rejected.",
-  paper: "The paper\u2019s seven voters on trajectory images, by majority; nothing is rejected.",
+  paper:
+    "The paper\u2019s seven comparisons of trajectory images, by majority; nothing is rejected.",
 };
 
 /** @type {(factor: number) => string} */
@@ -117,7 +118,7 @@ const profileChoice = (chosen, settings, put) =>
             @change=${() => put({ profile: name, weights: {} })}
           />
           <span
-            ><b>${name}</b> ${plural(voters.length, "voter")}${
+            ><b>${name}</b> ${plural(voters.length, "comparison")}${
               name === settings.default_profile ? ", the default" : ""
             }<small class="dim">${PROFILE_WORDS[name]}</small></span
           >
@@ -187,7 +188,7 @@ function fields(chosen, settings, put) {
       The robot does the same.
     </p>
     ${profileChoice(chosen, settings, put)}
-    <div class="settings-voters" tabindex="0" role="group" aria-label="Voters">
+    <div class="settings-voters" tabindex="0" role="group" aria-label="Comparisons">
       <table>
         <thead>
           <tr>

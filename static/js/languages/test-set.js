@@ -137,17 +137,21 @@ export async function removeTake(take) {
 }
 
 /**
- * What a change of the language did to the test set, in words; empty where nothing changed.
+ * What a change of the language did to the takes that can be compared, in words; empty where
+ * nothing changed.
  *
- * @param {Pick<TestSet, "better" | "worse">} testSet
+ * @param {Pick<TestSet, "better" | "worse" | "takes">} testSet
  */
-export const changeWords = ({ better, worse }) =>
-  [
+export function changeWords({ better, worse, takes }) {
+  const apart = takes.filter((take) => !take.set_aside && !(take.result && take.before)).length;
+  const changes = [
     worse.length ? `${plural(worse.length, "take")} worse` : "",
     better.length ? `${plural(better.length, "take")} better` : "",
-  ]
-    .filter(Boolean)
-    .join(", ");
+  ].filter(Boolean);
+  if (!changes.length) return "";
+  const others = apart ? `; ${plural(apart, "take")} cannot be compared` : "";
+  return `${changes.join(", ")} since the revision before${others}`;
+}
 
 /** After an edit of the language: recognise the takes again, and show which got better or worse. */
 async function testAgain() {
@@ -158,7 +162,7 @@ async function testAgain() {
   const now = state.testSet;
   const words = now && now.revision > testSet.revision - 1 ? changeWords(now) : "";
   if (words && now?.language_id === testSet.language_id)
-    toast("The test set has changed", `${words} since the revision before.`, {
+    toast("The test set has changed", `${words}.`, {
       action: { label: "Show", run: () => go("health") },
     });
 }

@@ -1,19 +1,19 @@
 // The status of the live view in words: the salute, the take, the frame rate.
 
-import { howTo, situation } from "../camera/take-steps.js";
+import { howTo, isSlow, situation } from "../camera/take-steps.js";
 import { byId, h } from "../core/dom.js";
 import { endName } from "../clips/salutes.js";
 import { state as page } from "../core/state.js";
 
 /** @import { Seen } from "../camera/live-messages.d.ts" */
 
-const FEW = 6; // frames a second; with fewer, a gesture of 1 s has at most five points.
+const kindOf = () => page.gestures?.trigger?.kind ?? "salute";
 
 /**
  * Show what begins and ends a take with the language's trigger; without a held trigger, no steps.
  */
 export function nameTrigger() {
-  const kind = page.gestures?.trigger?.kind ?? "salute";
+  const kind = kindOf();
   const held = kind === "salute" ? "Salute" : "Pose";
   for (const id of ["live-step-salute", "live-step-closing", "live-held"])
     byId(id).textContent = held;
@@ -27,7 +27,7 @@ export function nameTrigger() {
  * @param {Seen | null} answer
  */
 export function drawState(answer) {
-  const [step, text] = answer ? situation(answer) : ["", howTo()];
+  const [step, text] = answer ? situation(answer, kindOf()) : ["", howTo(kindOf())];
   const words = byId("live-instruction");
   if (words.textContent !== text) words.textContent = text;
   for (const each of byId("live-steps").children) {
@@ -53,7 +53,7 @@ export function drawSpeed(answer, seconds) {
           ["of which the models", `${Math.round(1000 * answer.seconds)} ms`],
         ];
   const unhurried = page.source === "clip" && byId("live-every").checked;
-  byId("live-slow").hidden = !answer || unhurried || answer.frames_per_second >= FEW;
+  byId("live-slow").hidden = !answer || unhurried || !isSlow(answer);
   byId("live-speed").replaceChildren(
     ...rows.map(([name, value]) => h("div", {}, h("dt", {}, name), h("dd", {}, value))),
   );

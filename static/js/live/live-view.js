@@ -5,6 +5,7 @@ import { openLink } from "../camera/live-socket.js";
 import { mirror } from "../camera/mirror.js";
 import { drawSeen, overlay } from "../camera/pose-overlay.js";
 import { countDown, record } from "../camera/recording.js";
+import { takeEnd } from "../camera/take-end.js";
 import { drawTrouble } from "../camera/trouble.js";
 import {
   cameraLost,
@@ -43,7 +44,6 @@ const BETWEEN = {
   none: "Anywhere",
 };
 
-const AFTER_SALUTE = 1000; // ms, so that the clip shows the end of the closing salute.
 const LONGEST = 5 * 60 * 1000; // ms of one recording: a dozen gestures; memory is finite.
 
 /** @type {ReturnType<typeof openLink> | null} */
@@ -56,7 +56,6 @@ let drawing = null;
 let recording = null;
 /** @type {AbortController | null} */
 let counting = null;
-let ending = 0; // timer of a recording's end
 let recognised = 0; // takes that were recognised since the source was started
 /** @type {number | null} */
 let rate = null; // frames recently processed per second
@@ -133,8 +132,7 @@ function seen(answer, seconds) {
   drawState(answer);
   drawSpeed(answer, seconds);
   rate = answer.frames_per_second;
-  if (recording && answer.state === "done" && byId("live-autostop").checked && !ending)
-    ending = setTimeout(endRecording, AFTER_SALUTE);
+  end.seen(answer);
 }
 
 /** @param {Trouble} trouble */
@@ -208,6 +206,7 @@ async function start() {
     ended,
     recognized: (/** @type {Recognized} */ result) => {
       recognised += 1;
+      end.recognized(result, state.gestures?.trigger?.kind ?? "salute");
       addResult(result, clip);
     },
   });
@@ -261,9 +260,10 @@ async function beginRecording() {
   drawControls();
 }
 
+const end = takeEnd(() => byId("live-autostop").checked && endRecording());
+
 async function endRecording() {
-  clearTimeout(ending);
-  ending = 0;
+  end.reset();
   const ended = recording;
   if (!ended) return;
   recording = null;

@@ -79,7 +79,7 @@ export function practiceCamera({ started, nameOf, taken }) {
     idle.hidden = running;
     judge.hidden = !running;
     picture.classList.toggle("recording", running);
-    if (!running) words.textContent = howTo();
+    if (!running) words.textContent = howTo(kind());
   }
 
   function begin() {
@@ -120,7 +120,7 @@ export function practiceCamera({ started, nameOf, taken }) {
   /** @param {Seen} answer */
   function seen(answer) {
     if (drawing) drawSeen(drawing, answer);
-    const [, text] = situation(answer);
+    const [, text] = situation(answer, kind());
     if (words.textContent !== text) words.textContent = text;
     end.seen(answer);
     if (answer.state === "idle" && bounded() && answer.salute <= SALUTE) return shorten();

@@ -142,7 +142,11 @@ export function trialBar(trial, result) {
     : `${result.label ?? `nothing; nearest is ${result.nearest}`}.`;
   return elementOf(
     html`<div class="trial" role="status">
-      <p><b>Trial: </b>${trial.change.words}. Recognised as ${read} Not saved yet.</p>
+      <p>
+        <b>Trial: </b>${trial.change.words}.
+        ${result.without?.length ? "Read without itself as" : "Recognised as"} ${read} Not saved
+        yet.
+      </p>
       <span class="joined"
         ><button type="button" class="primary" data-writes @click=${() => keep(trial)}>Keep</button
         ><button type="button" @click=${() => discard(trial)}>Discard</button></span

@@ -15,6 +15,7 @@ import { expectation, expectedOf, NONE } from "../languages/test-set.js";
 import { elementOf, html, nothing, render } from "../templates.js";
 import { buildRanges } from "./labelled-ranges.js";
 import { frameShown, keepsFrame } from "./playback.js";
+import { byDistance } from "./vote-order.js";
 import { supportOf } from "./vote-support.js";
 import { drawTimeline } from "./timeline.js";
 import { enlargePicture } from "./clip-picture.js";
@@ -202,16 +203,26 @@ const isItself = (result) =>
   !result.without?.length && demonstratedBy(state.gestures?.gestures ?? [], result);
 
 /**
- * The confidence, the share of the votes for the nearest gesture, and the trial.
+ * By what the nearest gesture stands first in the table.
+ *
+ * @param {Recognition} result
+ */
+const rankWords = (result) =>
+  byDistance(result)
+    ? `distance ${result.scores[result.gestures.indexOf(result.nearest)]?.toFixed(2)}`
+    : `${percent(supportOf(result).get(result.nearest) ?? 0)} of the votes`;
+
+/**
+ * The confidence, how the nearest gesture is ranked, and the trial.
  *
  * @param {Recognition} result
  */
 const supportWords = (result) =>
   [
     isItself(result) ? "" : `confidence ${percent(result.confidence)}`,
-    `${percent(supportOf(result).get(result.nearest ?? "") ?? 0)} of the votes`,
+    rankWords(result),
     result.pair && result.votes.second_opinion === result.pair[1]
-      ? "the two ways of comparing disagree"
+      ? `the directions of the arms say ${result.pair[1]}`
       : "",
     isItself(result) ? "read by itself: the only demonstration cannot be tested" : "",
     result.without?.length ? "read without itself, a demonstration" : "",

@@ -4,6 +4,13 @@ import { supportOf } from "./vote-support.js";
 
 /** @import { Recognition } from "../core/types.d.ts" */
 
+/**
+ * Whether the gestures are ranked by distance; profile paper and old records rank them by votes.
+ *
+ * @param {Pick<Recognition, "profile" | "scores">} recognition
+ */
+export const byDistance = ({ profile, scores }) => profile === "full" && scores.length > 0;
+
 /** Most gestures in the table; farther ones do not help to explain the decision. */
 export const MOST_COLUMNS = 40;
 
@@ -22,13 +29,14 @@ export function nearnessOf(distances) {
 }
 
 /**
- * Rows by descending weight, columns by descending weight of their voters, then by nearness.
+ * Rows by descending weight, columns in the ranking of the answer: by distance, or by descending
+ * weight of their voters and then by nearness.
  *
- * @param {Pick<Recognition, "voters" | "gestures" | "distances" | "votes" | "weights">} result
+ * @param {Pick<Recognition, "profile" | "scores" | "voters" | "gestures" | "distances" | "votes" | "weights">} result
  * @returns {{ rows: number[], columns: number[] }}
  */
 export function orderOf(result) {
-  const { voters, gestures, distances, weights } = result;
+  const { voters, gestures, distances, weights, scores } = result;
   const support = supportOf(result);
   const near = gestures.map((_, column) =>
     voters.reduce(
@@ -48,11 +56,16 @@ export function orderOf(result) {
   const bySupport = (one, other) =>
     (support.get(gestures[other]) ?? 0) - (support.get(gestures[one]) ?? 0) ||
     near[other] - near[one];
+  /**
+   * @param {number} one
+   * @param {number} other
+   */
+  const byScore = (one, other) => (scores[one] ?? Infinity) - (scores[other] ?? Infinity);
   return {
     rows: voters.map((_, row) => row).sort(byWeight),
     columns: gestures
       .map((_, column) => column)
-      .sort(bySupport)
+      .sort(byDistance(result) ? byScore : bySupport)
       .slice(0, MOST_COLUMNS),
   };
 }
@@ -81,7 +94,7 @@ export function shortNumber(value) {
   if (value === null) return "\u221e";
   if (value === 0) return "0";
   const size = Math.abs(value);
-  if (size < 0.001) return value.toExponential(0);
+  if (size < 0.001 || size >= 10000) return value.toExponential(0);
   const decimals = size < 0.1 ? 3 : size < 10 ? 2 : size < 100 ? 1 : 0;
   return value.toFixed(decimals).replace(/^0/, "");
 }

@@ -10,7 +10,14 @@ import { FACTORS } from "../languages/settings-dialog.js";
 import { html, nothing, optionsOf, render, until } from "../templates.js";
 import { tryOut } from "./intervention-trial.js";
 import { supportOf } from "./vote-support.js";
-import { MOST_COLUMNS, nearnessOf, orderOf, shortNumber, splitByWeight } from "./vote-order.js";
+import {
+  byDistance,
+  MOST_COLUMNS,
+  nearnessOf,
+  orderOf,
+  shortNumber,
+  splitByWeight,
+} from "./vote-order.js";
 
 /** @import { Recognition, State } from "../core/types.d.ts" */
 
@@ -20,9 +27,9 @@ import { MOST_COLUMNS, nearnessOf, orderOf, shortNumber, splitByWeight } from ".
  * @type {Record<Recognition["profile"], string>}
  */
 const CONFIDENCE_WORDS = {
-  full: "Confidence is the estimated probability that this gesture was meant; the weight is that of the voters whose nearest gesture it is.",
+  full: "Confidence is the estimated probability that this gesture was meant; the distance is that of all comparisons together, about 1 for another gesture.",
   paper:
-    "Confidence says how clearly the winner leads, by votes and by distance; the weight is that of the voters whose nearest gesture it is.",
+    "Confidence says how clearly the winner leads, by votes and by distance; the weight is that of the comparisons whose nearest gesture it is.",
 };
 
 /** @type {(factor: number) => string} */
@@ -124,7 +131,7 @@ function table(result, rows, columns) {
     <table class="vote-table" aria-label="Votes">
       <thead>
         <tr>
-          <th scope="col">voter</th>
+          <th scope="col">by</th>
           <th scope="col">weight</th>
           ${columns.map((column) => head(result, column))}
         </tr>
@@ -133,8 +140,16 @@ function table(result, rows, columns) {
         ${rows.map((at) => row(result, at, columns))}
       </tbody>
       <tfoot>
+        ${
+          byDistance(result)
+            ? html`<tr>
+                <th scope="row" colspan="2">distance</th>
+                ${columns.map((column) => html`<td>${shortNumber(result.scores[column])}</td>`)}
+              </tr>`
+            : nothing
+        }
         <tr>
-          <th scope="row" colspan="2">weight of its voters</th>
+          <th scope="row" colspan="2">weight for it</th>
           ${columns.map(
             (column) =>
               html`<td class="votes-for">
@@ -166,12 +181,12 @@ function ballot(result) {
     type="button"
     class="link"
     aria-expanded=${whole}
-    aria-label="${text} the voters without weight"
+    aria-label="${text} the comparisons without weight"
     @click=${turn}
   >
     ${text}
   </button>`;
-  const words = `${plural(silent.length, "voter")} without weight`;
+  const words = `${plural(silent.length, "comparison")} without weight`;
   return html`<div>${table(result, whole ? rows : heard, columns)}</div>
     ${silent.length ? html`<p class="dim">${words} ${toggle}</p>` : nothing}`;
 }

@@ -273,7 +273,10 @@ const remedyOf = ({ right, expected, counterfactuals: [best] }) =>
     : h(
         "p",
         { className: "remedies" },
-        `Recognised as ${expected} `,
+        // As a demonstration the take is read without itself.
+        best.change.kind === "further_demonstration"
+          ? "Other takes are read better "
+          : `Recognised as ${expected} `,
         h("button", { type: "button", onclick: () => tryOut(best) }, best.change.words),
         h("small", { className: "dim num" }, ` ${effectOf(best.effect)}`),
       );

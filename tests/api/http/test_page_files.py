@@ -8,7 +8,7 @@ import httpx
 import pytest
 
 from app import resources
-from app.api.http.page_files import INVITATION_FILES
+from app.api.http.page_files import COMMENT
 from app.settings import Settings
 from tests.api.running import client_of, running
 
@@ -93,7 +93,8 @@ def test_the_page_and_its_files_are_compressed_and_no_answer_of_the_api(
     assert int(found.headers["content-length"]) < len(text) / 10
     assert found.text == text
     assert client.get("/").headers["content-encoding"] == "gzip"
-    part = client.get(script(client), headers={"Range": "bytes=0-599"})
+    (folder / "notes.txt").write_text(text)
+    part = client.get("static/notes.txt", headers={"Range": "bytes=0-599"})
     assert (part.status_code, "content-encoding" in part.headers) == (206, False)
     listed = client.get("/api/v1/samples")
     assert len(listed.content) > 600
@@ -105,15 +106,32 @@ def test_what_is_no_file_is_not_found(client: httpx.Client, path: str) -> None:
     assert client.get(f"static/{path}").status_code == 404
 
 
-def test_anybody_may_fetch_what_the_page_of_invited_people_imports() -> None:
+def test_scripts_come_without_comments_and_lines_keep_their_numbers(
+    client: httpx.Client, folder: Path
+) -> None:
+    text = '// First.\n/**\n * Of two.\n */\nconst a = "// no"; // kept\n  // Third.\n  b(a);\n'
+    (folder / "js" / "main.js").write_text(text)
+    answer = client.get(script(client))
+    assert answer.text == '\n\n\n\nconst a = "// no"; // kept\n\nb(a);\n'
+    assert answer.headers["content-type"].startswith("text/javascript")
+
+
+def test_no_line_of_a_template_looks_like_a_comment() -> None:
+    for file in (resources.static_dir() / "js").rglob("*.js"):
+        for found in COMMENT.finditer(file.read_text(encoding="utf-8")):
+            lines = [line.strip() for line in found[0].splitlines()]
+            assert all(line.startswith(("//", "/*", "*")) for line in lines), found[0]
+
+
+def test_all_scripts_styles_and_pages_are_at_most_250_kb_on_their_way(
+    tmp_path: Path,
+) -> None:
     static = resources.static_dir()
-    waiting, found = [static / "js" / "invitation" / "invitation-view.js"], set[Path]()
-    while waiting:
-        module = waiting.pop()
-        if module not in found:
-            found.add(module)
-            imports = re.findall(r'\bfrom "(\.[^"]+\.js)"', module.read_text(encoding="utf-8"))
-            waiting += [(module.parent / each).resolve() for each in imports]
-    assert {module.relative_to(static).as_posix() for module in found} == {
-        file for file in INVITATION_FILES if file.endswith(".js")
-    }
+    with running(Settings(data_dir=tmp_path)) as server, client_of(server.address) as client:
+        page = client.get("/").text
+        sheet = re.findall('rel="stylesheet" href="([^"]+)"', page)[0]
+        scripts = [each.relative_to(static).as_posix() for each in static.rglob("*.*js")]
+        paths = ["/", sheet, *(f"static/{each}" for each in scripts)]
+        assert len(paths) > 100
+        sizes = [int(client.get(path).headers["content-length"]) for path in paths]
+    assert sum(sizes) <= 250_000

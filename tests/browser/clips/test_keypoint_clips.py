@@ -60,7 +60,7 @@ def test_a_folder_of_openpose_becomes_a_clip_and_a_gesture(
     page.keyboard.press("ArrowRight")
     expect(page).to_have_url(re.compile(r"start=0\.05"))
     page.get_by_role("button", name="Recognise", exact=True).click()
-    expect(page.locator("#outcome")).to_contain_text(re.compile("circle.*of the votes"))
+    expect(page.locator("#outcome")).to_contain_text(re.compile("circle.*distance"))
     page.get_by_role("button", name="Save as gesture").click()
     page.get_by_label("Label").fill("their circle")
     page.get_by_role("button", name="Save gesture").click()

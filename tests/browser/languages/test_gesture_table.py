@@ -106,6 +106,23 @@ def test_eight_clips_become_eight_gestures_in_one_step_that_can_be_undone(
     expect(cards).to_have_count(8)
 
 
+def test_before_a_sample_the_next_step_is_a_language_of_ones_own(
+    open_page: OpenPage, server: Running, client: httpx.Client
+) -> None:
+    clip, _ = (add_clip(server, "circle", name=f"own {number}.mp4") for number in range(2))
+    sample = next(each for each in client.get("/api/v1/languages").json() if each["sample"])
+    page = open_page({"language": sample["id"], "clip": clip}, scene=False)
+    recognise = page.get_by_role("button", name="Recognise", exact=True)
+    expect(recognise).to_be_enabled()
+    expect(recognise).not_to_have_class("primary")
+    make = page.get_by_role("button", name="Make gestures of these clips")
+    expect(make).to_have_class("primary")
+    own = library_of(server, client, "one's own")
+    page.get_by_label("Language", exact=True).select_option(own.language)
+    expect(recognise).to_have_class("primary")
+    expect(make).not_to_have_class("primary")
+
+
 def test_a_row_says_what_is_wrong_with_it(
     open_page: OpenPage, server: Running, client: httpx.Client
 ) -> None:

@@ -167,6 +167,8 @@ def test_three_people_finish_a_language(
     bo.get_by_role("button", name="Show hands-free").click()
     expect(bo.get_by_text("Next: line. Step back.")).to_be_visible()
     expect(bo.locator(".picture.recording")).to_be_visible()
+    # What the server sees is told as in Live.
+    expect(bo.locator(".step")).to_have_text(re.compile("^(Waiting for|Salute|Show the gesture, )"))
     picture(bo, "invitation")
     expect(bo.get_by_text("This is sent in a moment.")).to_be_visible()
     expect(bo.get_by_text("All gestures are added. Thank you!")).to_be_visible(timeout=JUDGED_MS)
@@ -216,6 +218,10 @@ def test_three_people_finish_a_language(
     assert faults(di) == []
     wrong = takes.filter(has_text="circle by Di")
     expect(wrong).to_contain_text(f"Di is asked: {question}")
+    # The take is seen again, and no answer to the doubt is recommended.
+    expect(di.get_by_label("Your take of circle")).to_be_visible()
+    expect(di.get_by_role("button", name="Yes, it is")).not_to_have_class("primary")
+    picture(di, "invitation-asked")
     di.get_by_role("button", name="Yes, it is").click()
     shows(di, "circle", "is looked at by whoever invited you")
     expect(wrong).to_contain_text("Waits for you. It is read as 'line'. Di says")
@@ -224,6 +230,8 @@ def test_three_people_finish_a_language(
     assert faults(page) == []
     wrong.get_by_role("button", name="Remove").click()
     expect(wrong).to_contain_text("removed")
+    expect(page.get_by_text("Take of circle removed")).to_be_visible()
+    expect(page.get_by_role("button", name="Add it after all")).to_be_visible()
     assert divers_of(client, language, "circle") == ["Ana", "Bo", "Cy"]
 
     # The link does nothing any more once it is withdrawn, and what came in can be taken back.

@@ -67,7 +67,7 @@ def test_every_distance_of_the_table_is_legible(open_page: OpenPage, server: Run
             library.add_gesture(shape, add_clip(server, shape, name=f"{shape}.mp4"))
         query = {**library.address, "recognition": library.recognise("line")}
         page = open_page(query, scene=False, size=(1440, 900))
-        page.get_by_role("button", name="Show the voters without weight").click()
+        page.get_by_role("button", name="Show the comparisons without weight").click()
         expect(page.locator("#stroke-over")).to_be_visible()
         for scheme in SCHEMES:
             page.emulate_media(color_scheme=scheme)

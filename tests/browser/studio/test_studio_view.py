@@ -98,7 +98,7 @@ def test_the_way_to_the_cube_is_seen_by_those_who_welcome_motion(
     until(is_square(canvas))
 
 
-def test_answer_remedy_picture_drawings_and_first_voters_are_in_sight_without_scrolling(
+def test_answer_remedies_picture_drawings_and_first_voters_are_in_sight_without_scrolling(
     open_page: OpenPage, library: Library
 ) -> None:
     recognition = library.recognise("line")
@@ -113,12 +113,12 @@ def test_answer_remedy_picture_drawings_and_first_voters_are_in_sight_without_sc
         page.locator("#lab-box"),
         page.locator("#outcome"),
         page.locator(".why-sentence"),
-        page.locator(".remedies button").first,
+        page.locator(".remedies"),
         page.get_by_role("img", name="Trajectory image: this take"),
         table.locator("tbody tr").first,
     ):
         expect(part).to_be_in_viewport(ratio=1)
-    page.get_by_role("button", name="Show the voters without weight").click()
+    page.get_by_role("button", name="Show the comparisons without weight").click()
     expect(table.locator("tbody tr")).to_have_count(len(MOTION_VOTERS))
 
 
@@ -256,7 +256,12 @@ def test_a_weight_is_tried_where_the_distances_are_shown(
     page = open_page(query, size=(1440, 900), scene=False)
     weight = page.get_by_label(re.compile("^Weight of velocity:"))
     expect(weight).to_have_value("1")
-    expect(page.locator("#outcome")).to_contain_text("100 % of the votes")
+    expect(page.locator("#outcome")).to_contain_text("distance 0")
+    # The table ranks as the outcome does.
+    table = page.get_by_role("table", name="Votes")
+    expect(table.locator("th.gesture").first).to_contain_text("circle")
+    expect(table.get_by_role("row").filter(has_text="distance")).to_be_visible()
+    expect(table).not_to_contain_text("voter")
     joint = page.get_by_label("Joint whose paths are drawn")
     drawn = joint.input_value()
     weight.select_option("off")

@@ -126,20 +126,28 @@ def test_a_trial_leaves_the_language_alone_when_it_is_left(
     assert test_set["takes"] == []
 
 
-def test_the_take_as_another_demonstration_stands_beside_the_other(
+def test_the_take_as_another_demonstration_is_read_without_itself(
     open_page: OpenPage, server: Running, library: Library
 ) -> None:
-    clip = add_clip(server, "circle backwards", name="a line for somebody.mp4")
+    library.add_gesture("square", add_clip(server, "corner", name="unfinished.mp4"))
+    clip, other = (add_clip(server, "square", name=f"square {number}.mp4") for number in (1, 2))
+    test_set = f"/api/v1/languages/{library.language}/test-set"
+    takes = [{"clip_id": other, "expected": "square"}]
+    library.client.post(test_set, json={"takes": takes}).raise_for_status()
     misread = replace(library, clip=clip)
-    recognition = misread.recognise("line")
+    recognition = misread.recognise("square")
     page = open_page({**misread.address, "recognition": recognition}, scene=False)
-    # As the only demonstration the take would be right by construction, which proves nothing.
+    outcome = page.locator("#outcome")
+    expect(outcome).to_contain_text("Recognised as circle, expected square")
     offered = page.locator(".remedies").get_by_role("button")
-    expect(offered).to_have_text(["with this take as another demonstration of 'line'"])
-    trial = try_out(page, "as another demonstration of 'line'")
-    expect(page.locator("#outcome")).to_contain_text("Recognised as line, as expected")
+    expect(offered).to_contain_text(["with this take as another demonstration of 'square'"])
+    expect(page.locator(".remedies")).to_contain_text("Other takes are read better with this take")
+    trial = try_out(page, "as another demonstration of 'square'")
+    expect(trial).to_contain_text("Read without itself as circle.")
+    expect(outcome).to_contain_text("Recognised as circle, expected square")
+    expect(outcome).to_contain_text("read without itself, a demonstration, on trial")
     trial.get_by_role("button", name="Keep").click()
-    expect(page.get_by_role("button", name="2 demonstrations of line")).to_be_visible()
+    expect(page.get_by_role("button", name="2 demonstrations of square")).to_be_visible()
 
 
 def test_a_change_of_a_gesture_is_kept_or_taken_back(

@@ -35,3 +35,16 @@ test("without a held trigger a take is over a moment after it was recognised", (
   context.mock.timers.tick(1);
   assert.equal(count, 1);
 });
+
+test("a held trigger ends a take also where the look at its end was left out", () => {
+  let count = 0;
+  const end = takeEnd(() => {
+    count += 1;
+  });
+  end.recognized({ closed: true }, "salute");
+  end.seen({ state: "done" });
+  assert.equal(count, 0);
+  end.recognized({ closed: true }, "salute");
+  end.seen({ state: "idle" });
+  assert.equal(count, 1);
+});

@@ -196,6 +196,9 @@ def test_this_take_as_demonstration_is_offered_where_it_repairs_other_takes() ->
     assert (last.effect.takes, last.effect.repaired, last.effect.broken) == (5, 1, 0)
     # It is right by itself: that repairs nothing.
     assert find_counterfactuals(replace(made, known=read), "line")[0] == ()
+    # Farther off than any take that is accepted, it is none unless others agree.
+    assert made.result.novelty[made.language.labels.index("line")] > 1
+    assert find_counterfactuals(replace(made, known=()), "line")[0] == ()
     # Without an end it may be no gesture at all.
     assert find_counterfactuals(replace(made, closed=False), "line")[0] == ()
 

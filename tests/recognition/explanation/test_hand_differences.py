@@ -131,7 +131,7 @@ def test_a_sequence_is_explained_beside_its_single_shapes(language: Language) ->
     assert "as expected" in explained(beside, follow(hold(FLAT, seed=5), hold(FIST)), "go")
 
 
-def test_a_refused_sequence_would_be_read_by_the_take_as_its_demonstration(
+def test_a_refused_sequence_is_not_offered_as_a_demonstration(
     language: Language,
 ) -> None:
     go = Gesture.from_demonstration("go", follow(hold(FLAT), hold(FIST)))
@@ -140,4 +140,4 @@ def test_a_refused_sequence_would_be_read_by_the_take_as_its_demonstration(
     found = explain(
         RecognitionContext(recognizer=recognizer, poses=poses, whole=poses), "go"
     ).counterfactuals
-    assert {each.change.kind for each in found} >= {"further_demonstration"}
+    assert "further_demonstration" not in {each.change.kind for each in found}

@@ -75,6 +75,8 @@ async def check_language(
     report = ended.result
     warnings = [*faults, *report["warnings"]]
     errors = sum(warning["error"] for warning in warnings)
+    # A test may have ended during the check.
+    tested = await run_in_threadpool(list_tested, studio, state)
     verdict = Verdict.of(errors, studio.language(state).labels, tested)
     return report | {"ok": not errors, "warnings": warnings, "verdict": verdict.to_dict()}
 

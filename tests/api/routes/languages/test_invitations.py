@@ -138,7 +138,7 @@ def test_the_page_of_invited_people_may_fetch_what_it_imports_and_no_more() -> N
         if path not in needed:
             needed.add(path)
             text = (folder / path).read_text("utf-8")
-            imports = re.findall(r'^(?:import|export)[^;]*? from "([^"]+)";', text, re.MULTILINE)
+            imports = re.findall(r'(?m)(?:^|;)(?:import|export)[^;"]*?from ?"([^"]+)"', text)
             queue += [
                 str((folder / path).parent.joinpath(each).resolve().relative_to(folder.resolve()))
                 for each in imports

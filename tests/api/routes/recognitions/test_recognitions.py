@@ -259,6 +259,24 @@ def test_a_trial_recognises_with_a_changed_gesture_and_edits_nothing(
     assert client.post(RECOGNITIONS, json=body).json()["label"] is None
 
 
+def test_a_demonstration_on_trial_reads_other_takes_and_not_its_own(
+    client: httpx.Client, studio: Studio, spoken: str
+) -> None:
+    own, other = (add_recorded_clip(studio, recording_of("square")) for _ in range(2))
+    change = {"demonstration": {"clip_id": own}, "further": True}
+    trial = {"trial": {"label": "line", "change": change}}
+    body = {"language_id": spoken, "expected": "line"}
+    before = client.post(RECOGNITIONS, json=body | {"clip_id": own}).json()
+    tried = client.post(RECOGNITIONS, json=body | trial | {"clip_id": own}).json()
+    assert tried["without"] == [["line", 1]]
+    assert tried["label"] == before["label"] == "circle"
+    assert tried["confidence"] == before["confidence"]
+    why = client.get(f"{RECOGNITIONS}/{tried['id']}/explanation")
+    assert not why.raise_for_status().json()["right"]
+    read = client.post(RECOGNITIONS, json=body | trial | {"clip_id": other}).json()
+    assert (read["label"], read["without"]) == ("line", [])
+
+
 def test_a_demonstration_is_read_by_the_others_of_its_gesture(
     client: httpx.Client, studio: Studio, language_id: str, spoken: str, circle_clip: str
 ) -> None:
