@@ -61,9 +61,9 @@ class Tuning:
     def words(self) -> str:
         """The tuning as a clause after "recognised"; weight factors of 1 are not mentioned."""
         words = [
-            f"with {factor:g} times the weight on the voter {humanize(voter)}"
+            f"with {factor:g} times the weight on the comparison {humanize(voter)}"
             if factor
-            else f"without the voter {humanize(voter)}"
+            else f"without the comparison {humanize(voter)}"
             for voter, factor in self.weights.items()
             if factor != 1
         ]

@@ -192,7 +192,7 @@ function fields(chosen, settings, put) {
       <table>
         <thead>
           <tr>
-            <th scope="col">Voter</th>
+            <th scope="col">Comparison</th>
             <th scope="col">Weight now</th>
             <th scope="col">Factor</th>
             <td></td>

@@ -42,8 +42,8 @@ const factorText = (factor) =>
  */
 const wordsOf = (voter, factor) =>
   factor === 0
-    ? `without the voter ${readable(voter)}`
-    : `with ${factor} times the weight on the voter ${readable(voter)}`;
+    ? `without the comparison ${readable(voter)}`
+    : `with ${factor} times the weight on the comparison ${readable(voter)}`;
 
 /**
  * The weight factors in the recognition on display; 1 by default.

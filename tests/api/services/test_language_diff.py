@@ -85,7 +85,7 @@ def test_how_it_is_recognised_is_compared_in_words(circle: Gesture) -> None:
     tuned = replace(language, profile="paper", tuning=Tuning(weights={"hu": 0.0}))
     assert describe_changes(language, tuned) == [
         "profile was “full”, is “paper”",
-        "was recognised as the profile does, is without the voter hu",
+        "was recognised as the profile does, is without the comparison hu",
     ]
 
 

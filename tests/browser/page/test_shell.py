@@ -107,7 +107,7 @@ def test_why_is_told_and_a_change_can_be_tried_and_taken_back(
     page.route("**/explanation?*", lambda route: held.append(route))
     page.get_by_label(re.compile("^Weight of velocity:")).select_option("2")
     trial = why.get_by_role("status")
-    expect(trial).to_contain_text("with 2 times the weight on the voter velocity")
+    expect(trial).to_contain_text("with 2 times the weight on the comparison velocity")
     trial.get_by_role("button", name=re.compile("Discard|Back to as it was")).click()
     expect(page.locator("#outcome")).to_contain_text("Recognised as circle, expected line")
     while not held:

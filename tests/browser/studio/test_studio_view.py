@@ -266,7 +266,7 @@ def test_a_weight_is_tried_where_the_distances_are_shown(
     drawn = joint.input_value()
     weight.select_option("off")
     trial = page.get_by_role("region", name="Why").get_by_role("status")
-    expect(trial).to_contain_text("without the voter velocity")
+    expect(trial).to_contain_text("without the comparison velocity")
     expect(page.get_by_label("Weight of velocity: 0 %")).to_have_value("0")
     expect(joint).to_have_value(drawn)
     language = f"/api/v1/languages/{library.language}"

@@ -115,8 +115,8 @@ def test_a_tuning_is_said_in_words() -> None:
         weights={"wrist_bend": 0.0, "hu": 2.5}, simplification=8.0, keypoints_repaired=False
     )
     assert tuning.words == (
-        "without the voter wrist bend, with 2.5 times the weight on the voter hu, with drawings "
-        "simplified by 8 pixels and with the keypoints left as the pose model saw them"
+        "without the comparison wrist bend, with 2.5 times the weight on the comparison hu, with "
+        "drawings simplified by 8 pixels and with the keypoints left as the pose model saw them"
     )
 
 

@@ -225,8 +225,8 @@ def test_a_tuning_that_the_language_keeps_changes_every_recognition(
     assert kept["profile"] == "paper"
     assert kept["tuning"] == tuning | {"keypoints_repaired": None}
     assert kept["change"] == (
-        "Recognise by the profile paper, without the voter hu and with drawings simplified by 8 "
-        "pixels"
+        "Recognise by the profile paper, without the comparison hu and with drawings "
+        "simplified by 8 pixels"
     )
     tuned = client.post(RECOGNITIONS, json=body).json()
     assert (tuned["profile"], tuned["weights"]["hu"], tuned["tuning"]) == ("paper", 0.0, None)
