@@ -189,7 +189,7 @@ def test_all_that_the_page_advises_changes_only_what_a_table_by_hand_says(studio
     ]
     repaired = sum(not was.right and now is not None and now.right for was, now in known)
     broken = sum(was.right and not (now is not None and now.right) for was, now in known)
-    remedy = page.locator(".remedies li").filter(has_text="with this take as another demonstration")
+    remedy = page.locator(".remedies").filter(has_text="with this take as another demonstration")
     expect(remedy).to_contain_text(
         f"repairs {repaired}, breaks {broken} of {len(known)} other takes"
     )

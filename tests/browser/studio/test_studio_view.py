@@ -98,7 +98,7 @@ def test_the_way_to_the_cube_is_seen_by_those_who_welcome_motion(
     until(is_square(canvas))
 
 
-def test_answer_remedies_picture_drawings_and_first_voters_are_in_sight_without_scrolling(
+def test_answer_picture_drawings_and_first_voters_are_in_sight_without_scrolling(
     open_page: OpenPage, library: Library
 ) -> None:
     recognition = library.recognise("line")
@@ -113,7 +113,6 @@ def test_answer_remedies_picture_drawings_and_first_voters_are_in_sight_without_
         page.locator("#lab-box"),
         page.locator("#outcome"),
         page.locator(".why-sentence"),
-        page.locator(".remedies"),
         page.get_by_role("img", name="Trajectory image: this take"),
         table.locator("tbody tr").first,
     ):

@@ -6,12 +6,12 @@ rate: right and wrong takes, with the rule of `app.recognition.recording.unseen`
 the longest gap that a take may have, chosen with each gesture left out in turn: the largest at
 which no wrong take of the other gestures reaches from one showing into the next.
 
-    python -m benchmarks.accuracy.uneven_frames --showings 480
+    python -m benchmarks.uneven_frames --showings 480
 
 With `--live` a robot of the command line watches a camera of 25 pictures a second on this machine,
 and is stopped (SIGSTOP) but for one picture at a time; an otherwise idle core is needed.
 
-    python -m benchmarks.accuracy.uneven_frames --live --showings 20
+    python -m benchmarks.uneven_frames --live --showings 20
 """
 
 from __future__ import annotations
