@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import get_args
 
 import pytest
+from hypothesis import settings
 
 from app.recognition import Recording
 from app.recognition.errors import ModelError
@@ -16,6 +17,10 @@ from tests.command_line import OsgStudio
 from tests.postgres import Cluster, postgres_cluster
 from tests.s3 import S3Server, s3_server
 from tests.short_clips import thinned
+
+# An example takes as long as a loaded machine needs.
+settings.register_profile("without a deadline", deadline=None)
+settings.load_profile("without a deadline")
 
 ROOT = Path(__file__).resolve().parents[1]
 RECORDINGS = ROOT / "tests" / "recordings"
