@@ -38,7 +38,7 @@ def recognize_range(
     Raises
     ------
     NotFound, ProblemError, OsgError
-        As `Studio.recording`, `find_clip_range`, `require_landmarks_of` and `make_recognizer`.
+        As `Studio.recording`, `find_clip_range`, `require_landmarks_of` and `try_gesture`.
     QuotaExceeded
         When the sender may not keep another recognition.
 
@@ -51,12 +51,12 @@ def recognize_range(
     profile = wanted.profile or language.profile
     require_landmarks_of(studio.clips.get(wanted.clip_id).clip, recording.poses, language)
     meant = find_clip_range(recording, wanted.start, wanted.end, trigger=language.trigger)
-    tried = language if wanted.trial is None else try_gesture(studio, state, wanted.trial)
-    own = OwnDemonstrations(studio, tried, wanted.trial)
+    changed = None if wanted.trial is None else try_gesture(studio, state, wanted.trial)
+    own = OwnDemonstrations(studio, language if changed is None else changed, wanted.trial)
     without = own.find(wanted.clip_id, meant.start, meant.end)
     if not all(own.leave_one(label, without) for label, _ in without):
         without = ()
-    recognizer = make_recognizer(studio, state, profile, wanted.tuning, wanted.trial, without)
+    recognizer = make_recognizer(studio, state, profile, wanted.tuning, changed, without)
     answer = recognizer.recognize(meant.poses, meant.unseen).to_dict()
     if without:
         answer[WITHOUT] = without
@@ -102,7 +102,7 @@ def load_context(record: store.RecognitionRecord, studio: Studio) -> Recognition
         state,
         record.profile,
         view.tuning,
-        view.trial,
+        None if view.trial is None else try_gesture(studio, state, view.trial),
         [(str(label), int(number)) for label, number in view.without],
     )
     language = recognizer.language
@@ -153,13 +153,23 @@ def make_recognizer(
     state: store.LanguageState,
     profile: str,
     tuning: TuningEntry | None,
-    trial: GestureTrial | None,
+    changed: Language | None,
     without: Collection[tuple[str, int]] = (),
 ) -> Recognizer:
-    """Return a recogniser of a revision, with a tuning and a changed gesture if given.
+    """Return a recogniser of a revision, with a tuning and a `changed` language (`try_gesture`).
 
-    The revision is not edited: a changed gesture is in a copy of the language, which also lacks
-    the demonstrations `without`.
+    The revision is not edited: the recogniser's language is a copy, which lacks the demonstrations
+    `without`.
+    """
+    if tuning is None and changed is None and not without:
+        return studio.recognizer(state, profile)
+    language = studio.language(state) if changed is None else changed
+    tuned = None if tuning is None else entry_to_tuning(tuning)
+    return Recognizer(language.without_demonstrations(without), profile, tuning=tuned)
+
+
+def try_gesture(studio: Studio, state: store.LanguageState, trial: GestureTrial) -> Language:
+    """Return a copy of a revision in which one gesture is changed.
 
     Raises
     ------
@@ -168,15 +178,6 @@ def make_recognizer(
         possible.
 
     """
-    if tuning is None and trial is None and not without:
-        return studio.recognizer(state, profile)
-    language = studio.language(state) if trial is None else try_gesture(studio, state, trial)
-    tuned = None if tuning is None else entry_to_tuning(tuning)
-    return Recognizer(language.without_demonstrations(without), profile, tuning=tuned)
-
-
-def try_gesture(studio: Studio, state: store.LanguageState, trial: GestureTrial) -> Language:
-    """Return a copy of a revision in which one gesture is changed; errors as `make_recognizer`."""
     change = trial.change.model_copy(update={"label": None})
     shown = change.demonstration
     language = studio.language(state)

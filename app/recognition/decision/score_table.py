@@ -63,13 +63,13 @@ class ScoreTable:
         """Return the index of the demonstration by which a gesture, given by index, is compared."""
         return int(self.demonstrations[gesture])
 
-    def find_nearest_demonstration(self, gestures: Sequence[Gesture], gesture: int) -> Gesture:
-        """Return a gesture with only the demonstration that the query was compared with.
+    def find_shown_demonstration(self, gestures: Sequence[Gesture], gesture: int) -> Gesture:
+        """Return a gesture with only the demonstration that the query was compared with."""
+        return gestures[gesture].single_demonstrations()[self.nearest_demonstration(gesture)]
 
-        It is turned as it was compared.
-        """
-        shown = gestures[gesture].single_demonstrations()[self.nearest_demonstration(gesture)]
-        return shown.turn(int(self.views[gesture]))
+    def find_nearest_demonstration(self, gestures: Sequence[Gesture], gesture: int) -> Gesture:
+        """Return the shown demonstration, turned as it was compared."""
+        return self.find_shown_demonstration(gestures, gesture).turn(int(self.views[gesture]))
 
     def with_idle_voters(self, names: Sequence[str]) -> ScoreTable:
         """Return the table with rows of further voters, which compare nothing."""

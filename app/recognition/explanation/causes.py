@@ -24,7 +24,7 @@ from app.recognition.decision.score_table import ScoreTable
 from app.recognition.errors import OsgError, PoseError
 from app.recognition.explanation.blame import Blame
 from app.recognition.explanation.context import RecognitionContext
-from app.recognition.explanation.cuts import agrees, find_cuts
+from app.recognition.explanation.cuts import find_cuts
 from app.recognition.explanation.hand_differences import (
     find_held_difference,
     find_moving_hand_difference,
@@ -199,7 +199,7 @@ def find_causes(
     at = recognizer.language.labels.index(expected)
     table = recognizer.compare(context.trace.query)
     gesture = table.find_nearest_demonstration(recognizer.language.gestures, at)
-    if _only_sinks(context) and not agrees(context, expected):
+    if _only_sinks(context) and context.compare_strokes(expected).differs is not None:
         return (Cause(kind=CauseKind.not_seen, sentence=SENTENCES["sinks"]),)
     found = list(_list_seen(context, table, gesture))
     if cut := _find_cut(context, expected, float(table.novelty[at])):
@@ -242,13 +242,19 @@ def _find_cut(context: RecognitionContext, expected: str, novelty: float) -> Cau
     the novelty falls. Of two the one that explains the take better.
     """
     at, best, found = context.language.labels.index(expected), novelty, None
+    if context.compare_strokes(expected).differs is None:
+        return None
     for cut in find_cuts(context):
         with suppress(OsgError):
             without = context.with_poses(cut.poses)
             now = float(without.score_table.novelty[at])
-            if now < best and without.result.nearest == expected and agrees(without, expected):
+            if (
+                now < best
+                and without.result.nearest == expected
+                and without.compare_strokes(expected).differs is None
+            ):
                 best, found = now, cut
-    if found is None or agrees(context, expected):
+    if found is None:
         return None
     start, end = float(found.poses.time[0]), float(found.poses.time[-1])
     words = {"where": WHERE[found.where], "label": repr(expected)}

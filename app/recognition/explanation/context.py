@@ -11,7 +11,9 @@ from app.recognition.decision.result import Recognition
 from app.recognition.decision.score_table import ScoreTable, Trace
 from app.recognition.errors import OsgError
 from app.recognition.explanation.demonstration_faults import DemonstrationFault
-from app.recognition.explanation.strokes import Piece, transcribe
+from app.recognition.explanation.strokes import Piece, transcribe, transcribe_gesture
+from app.recognition.explanation.transcript import Transcript, compare_transcripts
+from app.recognition.features.traversals import AS_SHOWN
 from app.recognition.gestures.demonstration import condense
 from app.recognition.gestures.gesture import Gesture
 from app.recognition.gestures.tuning import Tuning
@@ -181,6 +183,13 @@ class RecognitionContext:
         hands = {each.hand for each in self.strokes} & {*self.poses.landmarks}
         columns = [self.poses.landmarks.index(hand) for hand in sorted(hands)]
         return tuple(self.poses.time[self.repair.jumps[:, columns].any(axis=1)].tolist())
+
+    def compare_strokes(self, label: str) -> Transcript:
+        """Compare the strokes of the take with those of a gesture's nearest demonstration."""
+        table, at = self.score_table, self.language.labels.index(label)
+        shown = table.find_shown_demonstration(self.language.gestures, at)
+        traversal = table.traversals[at] or AS_SHOWN
+        return compare_transcripts(self.strokes, transcribe_gesture(shown), traversal, self.bridged)
 
     @cached_property
     def repair(self) -> Repair:

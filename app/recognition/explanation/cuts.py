@@ -7,9 +7,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 from app.recognition.explanation.context import RecognitionContext
-from app.recognition.explanation.strokes import Piece, transcribe_gesture
-from app.recognition.explanation.transcript import compare_transcripts
-from app.recognition.features.traversals import AS_SHOWN
+from app.recognition.explanation.strokes import Piece
 from app.recognition.gestures.demonstration import MIN_FRAMES
 from app.recognition.poses.sequence import PoseSequence
 
@@ -48,13 +46,3 @@ def find_cuts(context: RecognitionContext) -> Iterator[Cut]:
         poses = context.poses.between(first, last)
         if stroke.kind == "line" and len(poses) >= MIN_FRAMES:
             yield Cut(where, stroke, poses)
-
-
-def agrees(context: RecognitionContext, label: str) -> bool:
-    """Return whether a take shows the strokes of a gesture's nearest demonstration."""
-    table, at = context.score_table, context.language.labels.index(label)
-    shown = context.language.gestures[at].single_demonstrations()[table.nearest_demonstration(at)]
-    traversal = table.traversals[at] or AS_SHOWN
-    return (
-        compare_transcripts(context.strokes, transcribe_gesture(shown), traversal).differs is None
-    )

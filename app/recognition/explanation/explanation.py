@@ -20,17 +20,14 @@ from app.recognition.explanation.counterfactuals import (
     Counterfactual,
     find_counterfactuals,
 )
-from app.recognition.explanation.strokes import transcribe_gesture
 from app.recognition.explanation.transcript import (
     Line,
     Transcript,
     Words,
-    compare_transcripts,
     say_line,
     tell_transcript,
 )
 from app.recognition.explanation.vote_breakdown import VoterBreakdown, break_down_votes
-from app.recognition.features.traversals import AS_SHOWN
 from app.recognition.text.wording import list_some
 
 UNFOLLOWED: Final = {CauseKind.keypoints_jumped, CauseKind.other_person, CauseKind.not_seen}
@@ -262,7 +259,6 @@ def explain(
     turned = 0.0
     if other is not None and np.isfinite(table.scores[[at, other]]).all():
         turned = float(table.turned[at] - table.turned[other])
-    demonstrations = context.language.gestures[at].single_demonstrations()
     answered = ("profile", "label", "nearest", "runner_up", "confidence", "between", "disagreed")
     return Explanation(
         **{name: getattr(result, name) for name in (*answered, "fault", "support")},
@@ -282,12 +278,7 @@ def explain(
         ),
         causes=causes,
         blame=blame,
-        transcript=compare_transcripts(
-            context.strokes,
-            transcribe_gesture(demonstrations[table.nearest_demonstration(at)]),
-            table.traversals[at] or AS_SHOWN,
-            context.bridged,
-        ),
+        transcript=context.compare_strokes(expected),
         counterfactuals=found,
         tried=tried,
     )

@@ -63,8 +63,8 @@ def compare_pair(recognizer: Recognizer, one: int, other: int) -> PairDifference
     alignment = align(query, against, landmarks, traversal, mirrored=mirrored)
     if alignment is None:
         return None
-    theirs = recognizer.language.gestures[other].single_demonstrations()
-    expected = transcribe_gesture(theirs[compared.nearest_demonstration(other)])
+    theirs = compared.find_shown_demonstration(recognizer.language.gestures, other)
+    expected = transcribe_gesture(theirs)
     strokes = compare_transcripts(transcribe_gesture(shown), expected, traversal)
     words, span = f"it has the strokes of {against.label!r}", (0.0, float(query.time[-1]))
     if strokes.differs is not None:
