@@ -38,7 +38,7 @@ import av
 import cv2
 import numpy as np
 
-from app.recognition import Recording, record
+from app.recognition import PoseSequence, Recording, record
 from app.recognition.recording.salute import HOLD_SECONDS
 from app.recognition.recording.trimming import SETTING_OUT, Span
 from app.recognition.recording.unseen import LONGER_HELD, find_missable
@@ -102,43 +102,52 @@ def load_clips(gesture: str) -> tuple[Recording, ...]:
     return tuple(record(FOLDER / "clips" / f"{gesture}-test-{number}.mp4") for number in (1, 2))
 
 
+def play(
+    gesture: str, rate: float, *, even: bool, random: np.random.Generator
+) -> Iterator[tuple[float, PoseSequence, float]]:
+    """Yield what is seen of `IN_A_STREAM` showings: when one began, a frame, its salute score."""
+    clips, begun = load_clips(gesture), 0.0
+    for number in range(IN_A_STREAM):
+        clip = clips[number % len(clips)]
+        held = clip.poses.time[-1] + np.arange(1, int(PAUSE / STEP)) * STEP
+        times = np.concatenate([clip.poses.time, held])
+        due = float(random.uniform(0, 1 / rate))
+        for at, time in enumerate(times.tolist()):
+            if time < due:
+                continue
+            due = due + 1 / rate if even else time + random.exponential(1 / rate)
+            frame = min(at, len(clip.poses) - 1)
+            shown = float(clip.poses.time[frame])
+            pose = replace(clip.poses.between(shown, shown), time=np.array([begun + time]))
+            yield begun, pose, float(clip.salute[frame])
+        begun += float(times[-1]) + STEP
+
+
 def show(
     language: ActiveLanguage, gesture: str, showings: int, rate: float, *, even: bool, seed: int = 0
 ) -> Iterator[Read]:
     """Show a gesture to listeners, and yield the takes with a label."""
-    gaps = [0.0]
+    gap = 0.0
 
     def keep_longest(moments: Sequence[float], start: float, end: float, hold: float) -> tuple[()]:
+        nonlocal gap
         # A hold of less than nothing finds every span between two frames.
         spans: tuple[Span, ...] = find_missable(moments, start, end, hold - LIMIT)
-        gaps.append(max((each.end - each.start for each in spans), default=0.0))
+        gap = max((each.end - each.start for each in spans), default=0.0)
         return ()
 
-    clips = load_clips(gesture)
     for stream in range(showings // IN_A_STREAM):
         random = np.random.default_rng((seed, stream))
-        listener = create_listener(language)
-        begun, starts = 0.0, list[float]()
-        for number in range(IN_A_STREAM):
-            clip = clips[number % len(clips)]
-            held = clip.poses.time[-1] + np.arange(1, int(PAUSE / STEP)) * STEP
-            times = np.concatenate([clip.poses.time, held])
-            starts.append(begun)
-            due = float(random.uniform(0, 1 / rate))
-            for at, time in enumerate(times.tolist()):
-                if time < due:
-                    continue
-                due = due + 1 / rate if even else time + random.exponential(1 / rate)
-                frame = min(at, len(clip.poses) - 1)
-                shown = float(clip.poses.time[frame])
-                pose = replace(clip.poses.between(shown, shown), time=np.array([begun + time]))
-                with patch("app.recognition.recording.segmentation.find_missable", keep_longest):
-                    events = list(listener.feed(pose, float(clip.salute[frame])))
-                for event in events:
-                    if isinstance(event, TakeRecognized):
-                        first, last = (bisect(starts, each) for each in (event.start, event.end))
-                        yield Read(event.label == gesture, first != last, gaps[-1])
-            begun += float(times[-1]) + STEP
+        listener, starts = create_listener(language), list[float]()
+        for begun, pose, salute in play(gesture, rate, even=even, random=random):
+            if begun not in starts:
+                starts.append(begun)
+            with patch("app.recognition.recording.segmentation.find_missable", keep_longest):
+                events = list(listener.feed(pose, salute))
+            for event in events:
+                if isinstance(event, TakeRecognized):
+                    first, last = (bisect(starts, each) for each in (event.start, event.end))
+                    yield Read(event.label == gesture, first != last, gap)
 
 
 class Camera(ThreadingHTTPServer):
