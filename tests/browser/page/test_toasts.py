@@ -56,7 +56,8 @@ def test_every_gesture_can_be_pressed_while_messages_are_shown(
     expect(page.locator(".toast:visible")).to_have_count(1 if size[0] < 720 else 2)
     # Other views reach below the messages, and can be scrolled past them.
     page.get_by_role("navigation", name="Views").get_by_role("link", name="Languages").click()
-    view = page.locator(".view:visible")
+    view = page.locator(".view.languages")
+    expect(view.get_by_role("link", name="messages").first).to_be_visible()
     assert view.evaluate("(each) => each.getBoundingClientRect().bottom") >= size[1] - 1
     for _ in range(2):
         page.get_by_role("button", name="Dismiss").last.click()
