@@ -73,6 +73,15 @@ NEARLY: Final = 0.95
 LOOP: Final = math.radians(270)
 """Least turn of a loop."""
 
+CLOSED_LOOP: Final = math.radians(225)
+"""Least turn of a loop whose ends meet."""
+
+MEETS: Final = 0.06
+"""Largest distance at which a path meets itself, as a share of its extent."""
+
+MOST_STEPS: Final = 480
+"""Most steps of a path in which a meeting is sought: ten extents."""
+
 CLOSED: Final = 0.3
 """Largest ratio of distance to path of a loop that does not turn so far."""
 
@@ -216,7 +225,7 @@ def _follow(trajectory: Trajectory, name: str, start: float) -> list[Piece]:
     motion = measure_motion([path], even.time)
     parts = [] if motion is None else _list_runs(motion)
     found: list[Piece] = []
-    for part in [part for part in parts if len(part.xy) > SHORTEST] or parts[:1]:
+    for part in parts:
         here = part.name(name, start)
         before = found[-1] if found else here
         if here.start - before.end >= PAUSE_SECONDS:
@@ -233,7 +242,8 @@ def _list_runs(motion: Motion) -> list[_Run]:
     pieces = [slice(piece.first, piece.last + 1) for piece in split_pieces(motion)]
     runs = [_Run.of(motion.xy[each], motion.time[each]) for each in pieces]
     whole = _join([run for run in runs if run is not None], _Run.continues)
-    return _join([part for run in whole for part in run.split()], _Run.closes)
+    parts = [part for run in whole for part in run.split()]
+    return _join([part for part in parts if len(part.xy) > SHORTEST] or parts[:1], _Run.closes)
 
 
 def _join(runs: Sequence[_Run], belongs: Callable[[_Run, _Run], bool]) -> list[_Run]:
@@ -278,13 +288,19 @@ class _Run:
         bent = all(STRAIGHT <= abs(run.turn) < LOOP for run in (before, self))
         follows = self.time[0] - before.time[-1] < PAUSE_SECONDS
         whole = before.join(self)
-        return bent and follows and abs(whole.turn) >= LOOP and whole.direct < CLOSED
+        return bent and follows and abs(whole.turn) >= CLOSED_LOOP and whole.direct < CLOSED
 
     @property
     def turn(self) -> float:
         """Radians that it turns, positive: clockwise."""
         headings = self.headings
         return float(headings[-2:].mean() - headings[:2].mean()) if len(headings) > 3 else 0.0
+
+    @property
+    def is_one_way(self) -> bool:
+        """Whether it turns mostly in one sense."""
+        turns = np.diff(self.headings)
+        return bool(abs(turns.sum()) >= 0.6 * np.abs(turns).sum())
 
     @property
     def direct(self) -> float:
@@ -301,10 +317,29 @@ class _Run:
         return _Run(self.xy[first : last + 1], self.time[first : last + 1])
 
     def split(self) -> list[_Run]:
-        """Split at corners, and where the curve turns the other way."""
-        cuts = [0, *self._find_corners(), len(self.xy) - 1]
-        parts = [self.between(a, b) for a, b in itertools.pairwise(cuts)]
+        """Split around a loop, at corners, and where the curve turns the other way."""
+        corners, end = self._find_corners(), len(self.xy) - 1
+        if loop := self._find_loop(corners):
+            first, last = loop
+            before, after = self.between(0, first), self.between(last, end)
+            return [*before.split(), self.between(first, last), *after.split()]
+        parts = [self.between(a, b) for a, b in itertools.pairwise([0, *corners, end])]
         return [bent for part in parts for bent in part._split_bends()]
+
+    def _find_loop(self, corners: Sequence[int]) -> tuple[int, int] | None:
+        """Return between which points the path meets itself best, around a loop."""
+        is_turning_on = not corners and abs(self.turn) >= 3 * math.pi and self.is_one_way
+        if is_turning_on or len(self.xy) > MOST_STEPS:
+            return None
+        gaps = np.linalg.norm(self.xy[:, None] - self.xy, axis=2)
+        first, last = np.nonzero(np.triu(gaps < MEETS, SHORTEST + BEND // 2))
+        for at in np.argsort(gaps[first, last], kind="stable"):
+            loop = int(first[at]), int(last[at])
+            inside = any(loop[0] + BEND // 2 < corner < loop[1] - BEND // 2 for corner in corners)
+            run = self.between(*loop)
+            if not inside and abs(run.turn) >= CLOSED_LOOP and run.is_one_way:
+                return loop
+        return None
 
     def _find_corners(self) -> list[int]:
         """Return the points at which the path turns by `CORNER` within `BEND` steps."""
@@ -339,9 +374,7 @@ class _Run:
     def name(self, hand: str, start: float) -> Piece:
         """Return the run as a piece."""
         turn, chord = self.turn, self.xy[-1] - self.xy[0]
-        turns = np.diff(self.headings)
-        is_one_way = abs(turns.sum()) >= 0.6 * np.abs(turns).sum()
-        is_bent = abs(turn) >= STRAIGHT and is_one_way
+        is_bent = abs(turn) >= STRAIGHT and self.is_one_way
         kind: PieceKind = "curve"
         if abs(turn) >= LOOP or (is_bent and self.direct < CLOSED):
             kind = "loop"

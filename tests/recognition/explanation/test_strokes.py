@@ -32,6 +32,11 @@ def draw(*corners: tuple[float, float], seconds: float = 0.8) -> FloatArray:
     return np.concatenate([np.array(a) + reach * (np.array(b) - np.array(a)) for a, b in sides])
 
 
+def even(start: tuple[float, float], end: tuple[float, float]) -> FloatArray:
+    """Draw a straight stroke at the speed of a turn, without stops."""
+    return np.linspace(start, end, 30)
+
+
 def turn(degrees: float, *, turns: float = 1.0, radius: float = 0.5) -> FloatArray:
     """Draw a circle, positive turns clockwise, from a direction of its radius."""
     angle = np.radians(degrees) + np.linspace(0, turns * 2 * np.pi, round(abs(turns) * 60))
@@ -78,6 +83,15 @@ def say(path: FloatArray) -> str:
         (turn(180, turns=0.5), "clockwise arc right"),
         (turn(180, turns=-0.5), "anticlockwise arc right"),
         (np.concatenate([draw((-0.5, -1), (-0.5, 0)), turn(180)]), "down, clockwise loop"),
+        # Without a corner or a stop: a line that becomes a loop, and a loop that is left on a line.
+        (
+            np.concatenate([even((-1.5, 0.5), (0, 0.5)), turn(90, turns=-1)]),
+            "right, anticlockwise loop",
+        ),
+        (
+            np.concatenate([turn(0, turns=-1), even((0.5, 0), (0.5, -1.5))]),
+            "anticlockwise loop, up",
+        ),
     ],
 )
 def test_strokes_are_named_by_direction_sense_and_turns(path: FloatArray, words: str) -> None:
