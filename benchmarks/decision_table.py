@@ -17,10 +17,10 @@ from unittest.mock import patch
 import numpy as np
 
 from app.recognition import Language, PoseError, Recognizer
-from app.recognition.decision import fused_vote, outcome, second_opinion
+from app.recognition.decision import fused_vote, fusion, outcome
+from app.recognition.decision.fusion import hear
 from app.recognition.decision.outcome import find_answer
-from app.recognition.decision.score_table import ScoreTable
-from app.recognition.decision.second_opinion import hear
+from app.recognition.decision.result import ScoreTable
 from app.recognition.voters.motion_voters import SecondOpinion
 from benchmarks.methods.ours import gesture_of
 from benchmarks.sets.one_shot_draws import Draw, draws
@@ -35,8 +35,8 @@ BEFORE_RATIO: Final = 1.16
 OUTCOMES: Final = ("right", "wrong", "asked", "refused")
 
 CONSTANTS: Final = (
-    (second_opinion, "OPINION_EXPONENT", (0.0, 0.1, 0.2, 0.3)),
-    (second_opinion, "AGREED", (1.0, 1.1, 1.15)),
+    (fusion, "OPINION_EXPONENT", (0.0, 0.1, 0.2, 0.3)),
+    (fusion, "AGREED", (1.0, 1.1, 1.15)),
     (outcome, "ASK_RATIO", (1.12, 1.14, 1.165, 1.18)),
     (outcome, "FARTHER_EXPONENT", (0.0, 0.3)),
 )

@@ -16,7 +16,7 @@ from cyclonedx.model.tool import ToolRepository
 from cyclonedx.output.json import JsonV1Dot6
 from packageurl import PackageURL
 
-from app.recognition.models.catalogue import PACKAGED_FILES, TAUGHT_FILES
+from app.recognition.models.storage import PACKAGED_FILES, TAUGHT_FILES
 from release.licences import Licensed
 
 NAMESPACE: Final = uuid.UUID("6ba7b811-9dad-11d1-80b4-00c04fd430c8")

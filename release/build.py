@@ -12,8 +12,13 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 from app import __version__
-from app.recognition.models.catalogue import INSTALLED_FILES, PACKAGED_FILES, TASK_BUNDLES
-from app.recognition.models.storage import PACKAGED, verify_models
+from app.recognition.models.storage import (
+    INSTALLED_FILES,
+    PACKAGED,
+    PACKAGED_FILES,
+    TASK_BUNDLES,
+    verify_models,
+)
 from release.bill import FILE_NAME, build_bill
 from release.checkout import ROOT, ReleaseError, commit_seconds, export_commit
 from release.licences import Licensed, list_licences

@@ -12,7 +12,7 @@ from hypothesis import settings
 
 from app.recognition import Recording
 from app.recognition.errors import ModelError
-from app.recognition.models import ModelName, model_path
+from app.recognition.models.storage import ModelName, model_path
 from tests.command_line import OsgStudio
 from tests.postgres import Cluster, postgres_cluster
 from tests.s3 import S3Server, s3_server

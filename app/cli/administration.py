@@ -241,7 +241,7 @@ def models(context: typer.Context) -> None:
 @models_command.command("list")
 def list_models() -> None:
     """List the models with state, size and path."""
-    from app.recognition.models import installed_models
+    from app.recognition.models.storage import installed_models
 
     for model in installed_models():
         typer.echo(f"{model.name}\t{model.state}\t{model.size}\t{model.path}")
@@ -254,7 +254,7 @@ def install_models_command(
     ] = None,
 ) -> None:
     """Copy model files that are missing or damaged to the models folder; a wheel has them."""
-    from app.recognition.models import install_models, models_dir
+    from app.recognition.models.storage import install_models, models_dir
 
     with progress_bar("models") as advance:
         install_models(
@@ -268,7 +268,7 @@ def export_models_command(
     directory: Annotated[Path, typer.Argument(help="Folder to copy the models to.")],
 ) -> None:
     """Copy the models to a folder, for a robot without network."""
-    from app.recognition.models import export_models
+    from app.recognition.models.storage import export_models
 
     export_models(directory)
     tell(f"on the robot: osg-studio models install --source {directory}")

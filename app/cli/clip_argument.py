@@ -19,8 +19,7 @@ from app.clip_sources import ReadOptions, source_of
 from app.keypoint_files import KeypointOptions
 from app.recognition import Language, Recognition, Recognizer, Recording, Take, takes_in
 from app.recognition.errors import GestureError, KeypointFileError
-from app.recognition.estimation import create_estimator, list_landmarks
-from app.recognition.estimation.factory import MEDIAPIPE_HANDS
+from app.recognition.estimation.factory import MEDIAPIPE_HANDS, create_estimator, list_landmarks
 from app.recognition.estimation.water import WaterCorrection
 from app.recognition.language.requirements import require_landmarks
 from app.recognition.recording.clip_range import find_unseen_in

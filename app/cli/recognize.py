@@ -23,7 +23,7 @@ from app.recognition.explanation.context import RecognitionContext
 from app.recognition.explanation.explanation import explain
 from app.recognition.gestures.profile import PROFILES
 from app.recognition.recording.chapters import tell_chapters
-from app.recognition.recording.missing_salutes import explain_missing_salutes
+from app.recognition.recording.extraction import explain_missing_salutes
 from app.recognition.recording.unseen import tell_clock
 from app.recognition.spotting import Spotter
 from app.recognition.text.wording import ask_twins

@@ -26,7 +26,7 @@ from app.clip_sources.source import (
     UnsupportedFile,
 )
 from app.recognition.errors import BagError, OsgError, TopicError
-from app.recognition.estimation import finds_hands
+from app.recognition.estimation.factory import finds_hands
 
 
 class BagSource(ClipSource):

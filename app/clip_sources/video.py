@@ -20,7 +20,7 @@ from app.clip_sources.source import (
     Refusal,
 )
 from app.recognition.errors import OsgError
-from app.recognition.estimation import finds_hands
+from app.recognition.estimation.factory import finds_hands
 from app.recognition.recording.chapters import chapters_in, join_chapters
 from app.recognition.recording.file_kinds import HEAD_BYTES, video_type
 from app.recognition.recording.video import FrameReader, probe

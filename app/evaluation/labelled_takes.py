@@ -13,7 +13,8 @@ from app.evaluation.labelled_files import LabelledFile
 from app.evaluation.one_shot import LabelledTake
 from app.recognition import Recording, takes_in
 from app.recognition.errors import ModelError, OsgError
-from app.recognition.estimation import PoseEstimator, create_estimator
+from app.recognition.estimation.estimator import PoseEstimator
+from app.recognition.estimation.factory import create_estimator
 from app.recognition.recording.extraction import record_frames
 from app.recognition.recording.video import FrameSource
 from app.recognition.triggers.trigger import SALUTE, Trigger

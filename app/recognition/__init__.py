@@ -15,7 +15,7 @@ from app.recognition.errors import (
     RecognitionError,
     VideoError,
 )
-from app.recognition.estimation import create_estimator
+from app.recognition.estimation.factory import create_estimator
 from app.recognition.explanation.context import RecognitionContext
 from app.recognition.explanation.explanation import explain
 from app.recognition.gestures.gesture import Gesture

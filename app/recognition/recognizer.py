@@ -10,8 +10,7 @@ import numpy as np
 
 from app.recognition.decision.fused_vote import FusedVote
 from app.recognition.decision.majority_vote import MajorityVote
-from app.recognition.decision.result import Recognition
-from app.recognition.decision.score_table import ScoreTable, Trace
+from app.recognition.decision.result import Recognition, ScoreTable, Trace
 from app.recognition.errors import LanguageError, PoseError
 from app.recognition.gestures.demonstration import condense
 from app.recognition.gestures.profile import find_profile

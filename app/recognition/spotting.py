@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from app.recognition.decision.confidence import estimate_confidence
+from app.recognition.decision.outcome import estimate_confidence
 from app.recognition.decision.result import Recognition
 from app.recognition.errors import OsgError, PoseError
 from app.recognition.features.motion import find_followed_landmarks

@@ -6,14 +6,13 @@ from collections.abc import Callable, Iterator
 from typing import Final
 
 from app.recognition.errors import OsgError
-from app.recognition.estimation import list_landmarks
 from app.recognition.estimation.estimator import PoseEstimator
-from app.recognition.estimation.water import WaterCorrection
-from app.recognition.estimation.water_sight import Sparing, WaterSight
+from app.recognition.estimation.factory import list_landmarks
+from app.recognition.estimation.water import Sparing, WaterCorrection, WaterSight
 from app.recognition.language.requirements import require_landmarks, require_trigger
 from app.recognition.poses.frame import FrameLandmarks
 from app.recognition.recording.extraction import build_frame_sequence
-from app.recognition.recording.people_in_stream import PeopleInStream
+from app.recognition.recording.live_segmentation import PeopleInStream
 from app.recognition.recording.salute import best_salute
 from app.robot import events
 from app.robot.active_language import ActiveLanguage

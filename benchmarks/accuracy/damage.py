@@ -29,7 +29,7 @@ from app.recognition import (
     takes_in,
 )
 from app.recognition.gestures.tuning import Tuning
-from app.recognition.preprocessing.side_swaps import swap_sides
+from app.recognition.preprocessing.repair import swap_sides
 from benchmarks.accuracy.shared_sets import demonstrated
 from benchmarks.sets.one_shot_draws import draws
 from benchmarks.sets.recorded_sets import recorded_sets

@@ -30,7 +30,7 @@ from app.recognition import (
     record,
     takes_in,
 )
-from app.recognition.estimation import create_estimator
+from app.recognition.estimation.factory import create_estimator
 from app.recognition.gestures.profile import PROFILES
 from app.recognition.poses.landmarks import POSE_LANDMARKS
 from app.recognition.poses.skeletons import COCO_17

@@ -36,7 +36,7 @@ from app.recognition.explanation.context import KnownTake, KnownTakes, Recogniti
 from app.recognition.explanation.explanation import explain
 from app.recognition.poses.trajectory import Trajectory
 from app.recognition.recording.clip_range import find_clip_range
-from app.recognition.recording.missing_salutes import explain_missing_salutes
+from app.recognition.recording.extraction import explain_missing_salutes
 from app.recognition.recording.segmentation import takes_in
 from benchmarks.accuracy.misreading_pictures import draw_bodies, draw_clip, draw_paths
 from benchmarks.accuracy.people import all_sets, define

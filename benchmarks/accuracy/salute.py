@@ -17,8 +17,8 @@ from pathlib import Path
 import cv2
 import numpy as np
 
-from app.recognition.estimation import create_estimator
 from app.recognition.estimation.estimator import PoseEstimator
+from app.recognition.estimation.factory import create_estimator
 from app.recognition.poses.frame import Image
 from app.recognition.poses.landmarks import FINGERS, HAND_LANDMARKS
 from app.recognition.poses.sequence import FloatArray

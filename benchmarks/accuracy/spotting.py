@@ -21,7 +21,7 @@ import numpy as np
 
 from app.evaluation.proportion import Share
 from app.recognition import Language, Recognizer
-from app.recognition.estimation import create_estimator
+from app.recognition.estimation.factory import create_estimator
 from app.recognition.recording.video import read_frames
 from app.recognition.spotting import Spotted, Spotter
 from benchmarks.accuracy.shared_sets import demonstrated

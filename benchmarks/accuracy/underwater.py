@@ -21,7 +21,8 @@ import cv2
 import numpy as np
 
 from app.recognition import Language, Recognizer, Recording, record, takes_in
-from app.recognition.estimation import PoseEstimator, create_estimator
+from app.recognition.estimation.estimator import PoseEstimator
+from app.recognition.estimation.factory import create_estimator
 from app.recognition.estimation.water import WaterCorrection
 from app.recognition.poses.frame import Image
 from app.recognition.recording.salute import ENTER_SCORE

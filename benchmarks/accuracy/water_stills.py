@@ -44,12 +44,12 @@ import cv2
 import numpy as np
 
 from app.evaluation.proportion import Share
-from app.recognition.estimation import FrameLandmarks, create_estimator, onnx_estimator
+from app.recognition.estimation import onnx_estimator
+from app.recognition.estimation.factory import create_estimator
 from app.recognition.estimation.landmark_models.arms import measure_body
 from app.recognition.estimation.landmark_models.onnx_session import ModelSession, Tensor
-from app.recognition.estimation.water import WaterCorrection
-from app.recognition.estimation.water_sight import WaterSight
-from app.recognition.poses.frame import Body, Image
+from app.recognition.estimation.water import WaterCorrection, WaterSight
+from app.recognition.poses.frame import Body, FrameLandmarks, Image
 from app.recognition.poses.landmarks import POSE_LANDMARKS
 from app.recognition.poses.sequence import FloatArray
 

@@ -23,8 +23,8 @@ from typing import Final, Protocol
 
 import numpy as np
 
-from app.recognition.estimation import create_estimator
 from app.recognition.estimation.estimator import PoseEstimator
+from app.recognition.estimation.factory import create_estimator
 from app.recognition.estimation.water import WaterCorrection
 from app.recognition.poses.frame import FrameLandmarks, Image
 from app.recognition.recording.live_segmentation import LONGEST_TRIGGER

@@ -28,7 +28,8 @@ import numpy as np
 import onnxruntime  # type: ignore[import-untyped]
 
 from app.recognition import Language, Recognizer, Recording, record, takes_in
-from app.recognition.estimation import PoseEstimator, create_estimator
+from app.recognition.estimation.estimator import PoseEstimator
+from app.recognition.estimation.factory import create_estimator
 from app.recognition.estimation.landmark_models import arms, body
 from app.recognition.poses.landmarks import POSE_LANDMARKS
 from app.recognition.poses.sequence import FloatArray

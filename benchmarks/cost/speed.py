@@ -21,7 +21,7 @@ import cv2
 import numpy as np
 
 from app.recognition import Gesture, Language, PoseSequence, Recognizer
-from app.recognition.estimation import create_estimator
+from app.recognition.estimation.factory import create_estimator
 from app.recognition.poses.landmarks import POSE_LANDMARKS
 from app.recognition.recording.video import read_frames
 from app.resources import samples_dir

@@ -28,12 +28,11 @@ from rich.console import Console
 from rich.table import Table
 
 from app.cli.robots.run import handle_signals
-from app.recognition.estimation import create_estimator
 from app.recognition.estimation.estimator import PoseEstimator
-from app.recognition.estimation.factory import NO_HANDS
-from app.recognition.estimation.water_sight import WaterSight
+from app.recognition.estimation.factory import NO_HANDS, create_estimator
+from app.recognition.estimation.water import WaterSight
 from app.recognition.recording.extraction import build_frame_sequence
-from app.recognition.recording.people_in_stream import PeopleInStream
+from app.recognition.recording.live_segmentation import PeopleInStream
 from app.recognition.recording.salute import best_salute
 from app.robot import create_listener, open_source
 from app.robot.events import TakeEvent

@@ -23,7 +23,7 @@ CHANGE = (0.1, 1.0)
 """Seconds that the change from one sign to the next takes, uniformly drawn."""
 
 ON_ITS_WAY = 0.2
-"""Share of a take at either end in which the hand may come or go, as in `held_hands`."""
+"""Share of a take at either end in which the hand may come or go, as in `holds`."""
 
 UNSEEN = 0.5
 """Share of the changes during which no hand is found; in the others the hand moves straight."""

@@ -18,8 +18,10 @@ import numpy as np
 
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.recording.salute import HeldTrigger
-from app.recognition.simulation.background_motion import simulate_background_motion
-from app.recognition.simulation.held_poses import simulate_held_poses
+from app.recognition.simulation.background_motion import (
+    simulate_background_motion,
+    simulate_held_poses,
+)
 from app.recognition.triggers import arm_pose
 from app.recognition.triggers.arm_pose import HANGING_ARMS, LEAVE_SCORE, ArmPose, locate_joints
 

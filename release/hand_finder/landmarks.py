@@ -16,8 +16,7 @@ import torch
 import torch.nn.functional as functional
 
 from app.recognition.estimation.landmark_models.hand_model import INPUT_SIZE
-from app.recognition.estimation.landmark_models.hand_regions import palm_size, region_of_hand
-from app.recognition.estimation.landmark_models.region import Region
+from app.recognition.estimation.landmark_models.region import Region, palm_size, region_of_hand
 from release.hand_finder.network import TaughtNetwork
 from release.hand_finder.pictures import Hands
 from release.hand_finder.teaching import recolour

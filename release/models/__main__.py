@@ -17,14 +17,16 @@ from functools import partial
 from pathlib import Path
 
 from app.recognition.errors import ModelError
-from app.recognition.models.catalogue import (
+from app.recognition.models.storage import (
     INSTALLED_FILES,
     LICENSE,
     MODELS,
+    PACKAGED,
     TASK_BUNDLES,
     InstalledFile,
+    file_state,
+    write_file,
 )
-from app.recognition.models.storage import PACKAGED, file_state, write_file
 from release.models.onnx_model import to_onnx
 from release.models.schemas import Schemas
 from release.models.sources import (

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Final
 
-from app.recognition.models.catalogue import ModelName, TaskBundleName
+from app.recognition.models.storage import ModelName, TaskBundleName
 
 
 @dataclass(frozen=True)

@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from app.recognition import PoseSequence
-from app.recognition.preprocessing.side_swaps import pair_sides
+from app.recognition.preprocessing.repair import pair_sides
 
 
 def with_sides_exchanged(poses: PoseSequence, frames: Iterable[int]) -> PoseSequence:

@@ -9,7 +9,7 @@ pytest.importorskip("cyclonedx", reason="needs cyclonedx-python-lib")
 from cyclonedx.schema import SchemaVersion
 from cyclonedx.validation.json import JsonStrictValidator
 
-from app.recognition.models.catalogue import PACKAGED_FILES, TAUGHT_FILES
+from app.recognition.models.storage import PACKAGED_FILES, TAUGHT_FILES
 from release.bill import build_bill
 from release.licences import list_licences
 

@@ -18,7 +18,7 @@ import pytest
 
 pytest.importorskip("cyclonedx", reason="needs cyclonedx-python-lib")
 
-from app.recognition.models.catalogue import INSTALLED_FILES, PACKAGED_FILES
+from app.recognition.models.storage import INSTALLED_FILES, PACKAGED_FILES
 from release.build import build_release
 from release.checkout import ReleaseError, run_git
 from tests.conftest import ROOT

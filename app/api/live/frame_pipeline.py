@@ -17,12 +17,10 @@ from app.api.workers.worker_messages import Pose, pose_in
 from app.recognition import OsgError, PoseSequence, Recognition, Recognizer, Take
 from app.recognition.errors import VideoError
 from app.recognition.estimation.estimator import PoseEstimator
-from app.recognition.estimation.water import WaterCorrection
-from app.recognition.estimation.water_sight import WaterSight
+from app.recognition.estimation.water import WaterCorrection, WaterSight
 from app.recognition.poses.frame import Image
 from app.recognition.recording.extraction import build_frame_sequence
-from app.recognition.recording.live_segmentation import LiveTakes, Sight
-from app.recognition.recording.people_in_stream import PeopleInStream
+from app.recognition.recording.live_segmentation import LiveTakes, PeopleInStream, Sight
 from app.recognition.recording.segmentation import TakeState
 from app.recognition.spotting import Spotter
 from app.recognition.triggers.trigger import SALUTE, Trigger

@@ -29,8 +29,8 @@ from app.api.live.frame_pipeline import Frame, FramePipeline, Recognized
 from app.api.services.running_studio import CurrentStudio, Studio
 from app.recognition import OsgError, Recognizer
 from app.recognition.errors import EstimatorError, ModelError, VideoError
-from app.recognition.estimation import create_estimator
 from app.recognition.estimation.estimator import PoseEstimator
+from app.recognition.estimation.factory import create_estimator
 from app.recognition.gestures.profile import ProfileName
 from app.store import Invitation, NotFound
 

@@ -7,7 +7,7 @@ from fastapi import APIRouter
 from app import __version__
 from app.api.http.problems import problem_responses
 from app.api.http.schemas.values import View
-from app.recognition.models import installed_models
+from app.recognition.models.storage import installed_models
 
 
 class Health(View):

@@ -21,9 +21,8 @@ from app.recognition.explanation.strokes import transcribe_gesture
 from app.recognition.explanation.transcript import describe_strokes
 from app.recognition.gestures.gesture import Gesture
 from app.recognition.language.file import seal, short_code
+from app.recognition.language.file_schema import trigger_to_entry, tuning_to_entry
 from app.recognition.language.grammar_entry import grammar_to_entry
-from app.recognition.language.trigger_entry import trigger_to_entry
-from app.recognition.language.tuning_entry import tuning_to_entry
 from app.store import Draft, LanguageRevision, LanguageState, Quota
 
 

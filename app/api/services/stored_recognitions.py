@@ -19,9 +19,8 @@ from app.api.services.running_studio import Studio
 from app.recognition import Language, PoseSequence, Recognition, Recognizer
 from app.recognition.explanation.context import RecognitionContext
 from app.recognition.explanation.counterfactuals import Counterfactual, Intervention
-from app.recognition.language.file_schema import TuningEntry
+from app.recognition.language.file_schema import TuningEntry, entry_to_tuning
 from app.recognition.language.requirements import require_seen_landmarks
-from app.recognition.language.tuning_entry import entry_to_tuning
 from app.recognition.recording.clip_range import find_clip_range, find_surroundings
 
 WITHOUT = "without"

@@ -43,11 +43,11 @@ from app.clip_sources import (
 )
 from app.recognition import Language, OsgError, Recognizer, Recording
 from app.recognition.errors import LanguageError, ModelError, VideoError
-from app.recognition.estimation import create_estimator
+from app.recognition.estimation.factory import create_estimator
 from app.recognition.health.check import check_health
+from app.recognition.language.file_schema import TriggerEntry, entry_to_trigger
 from app.recognition.language.osg_reference import from_reference, is_reference
 from app.recognition.language.requirements import require_seen_landmarks
-from app.recognition.language.trigger_entry import TriggerEntry, entry_to_trigger
 from app.recognition.poses.frame import Body, FrameLandmarks
 from app.recognition.recording.chapters import join_chapters
 from app.recognition.recording.clip_range import find_clip_range

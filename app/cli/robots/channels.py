@@ -12,7 +12,7 @@ from contextlib import AbstractContextManager, contextmanager, suppress
 from typing import Final, Literal, Protocol, TextIO
 
 from app.recognition.errors import OsgError
-from app.recognition.estimation import FrameLandmarks
+from app.recognition.poses.frame import FrameLandmarks
 from app.recognition.text.wording import ask_twins
 from app.robot import ActiveLanguage, Frame, events
 from app.robot.commands.answers import Answer

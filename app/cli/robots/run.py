@@ -17,7 +17,7 @@ from app.cli.robots.channels import Channels, Handler, open_ros2_topics
 from app.cli.robots.robot_options import RobotOptions
 from app.cli.terminal import describe_error, tell
 from app.recognition.errors import OsgError, VehicleError, explain_missing_package
-from app.recognition.estimation import create_estimator
+from app.recognition.estimation.factory import create_estimator
 from app.robot import (
     Event,
     LandmarkListener,

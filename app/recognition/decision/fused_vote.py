@@ -10,9 +10,14 @@ from types import MappingProxyType
 import numpy as np
 import numpy.typing as npt
 
-from app.recognition.decision.confidence import bound_confidence, estimate_confidence
 from app.recognition.decision.distinctions import find_tempo_dependent, find_unambiguous_traversals
-from app.recognition.decision.fusion import fuse, weigh_distances, weigh_voters
+from app.recognition.decision.fusion import (
+    OPINION_EXPONENT,
+    fuse,
+    hear,
+    weigh_distances,
+    weigh_voters,
+)
 from app.recognition.decision.hand_references import (
     WEIGHT,
     HeldReferences,
@@ -25,7 +30,9 @@ from app.recognition.decision.outcome import (
     MOST_REFUSED,
     NOVELTIES,
     OthersScores,
+    bound_confidence,
     choose_limit,
+    estimate_confidence,
     find_answer,
     is_rejected,
 )
@@ -35,9 +42,7 @@ from app.recognition.decision.references import (
     describe_query,
     find_nearest,
 )
-from app.recognition.decision.result import Recognition
-from app.recognition.decision.score_table import ScoreTable
-from app.recognition.decision.second_opinion import OPINION_EXPONENT, hear
+from app.recognition.decision.result import Recognition, ScoreTable
 from app.recognition.decision.virtual_views import list_views
 from app.recognition.features.motion import SHARES, SIZE
 from app.recognition.features.trajectory_image import is_drawable
@@ -46,7 +51,7 @@ from app.recognition.gestures.switches import Sensitivity
 from app.recognition.gestures.tuning import AS_THE_PROFILE, Tuning
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.trajectory import Trajectory
-from app.recognition.preprocessing.held_hands import find_least_movement, measure_movement
+from app.recognition.preprocessing.holds import find_least_movement, measure_movement
 from app.recognition.voters.motion_voters import Path, SecondOpinion, Tempo, Velocity
 from app.recognition.voters.registry import HAND_VOTER_NAMES, MOTION_VOTERS, VOTER_NAMES
 

@@ -12,8 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from app.recognition.decision.outcome import NOVELTIES
-from app.recognition.decision.result import Recognition
-from app.recognition.decision.score_table import ScoreTable
+from app.recognition.decision.result import Recognition, ScoreTable
 from app.recognition.features.trajectory_image import SIMPLIFICATION, draw
 from app.recognition.gestures.gesture import Gesture
 from app.recognition.gestures.switches import Sensitivity

@@ -11,7 +11,7 @@ import numpy as np
 from app.recognition.errors import EstimatorError
 from app.recognition.estimation.estimator import check_image
 from app.recognition.estimation.landmark_models.hand_tracker import MOST_HANDS
-from app.recognition.models import task_bundle_path
+from app.recognition.models.storage import task_bundle_path
 from app.recognition.poses.frame import Body, FrameLandmarks, Hand, Image, Side
 from app.recognition.poses.sequence import FloatArray
 

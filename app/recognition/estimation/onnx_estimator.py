@@ -25,7 +25,7 @@ from app.recognition.estimation.landmark_models.onnx_session import (
     Signature,
     check_provider,
 )
-from app.recognition.models import ModelName, finder_path, gloves_path, model_path
+from app.recognition.models.storage import ModelName, finder_path, gloves_path, model_path
 from app.recognition.poses.frame import FrameLandmarks, Image
 
 DEFAULT_THREADS: Final = 2

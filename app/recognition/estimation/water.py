@@ -3,18 +3,31 @@
 Water absorbs red first and, where it is turbid, blue; particles add a uniform colour; light from
 above leaves divers dark. The models were trained in air. `correct_colours` decides by grey levels,
 for estimators that cannot examine a single image; `WaterSight` decides by the models' scores.
+
+Water sight: runs an estimator on corrected frames, of files and of live streams.
+
+Water choice: selects the water correction with the highest scores of the models.
+
+Grey levels do not show which correction a model needs: a back-lit diver and one in green murk have
+the same range of brightness and need opposite corrections. So the models' scores decide. A frame
+with low scores is in doubt and is examined under every correction. The correction with the highest
+scores for body and hands, over the latest examinations, is used until frames are in doubt again.
 """
 
 from __future__ import annotations
 
-from typing import Final, Literal, get_args
+from collections import deque
+from collections.abc import Mapping
+from typing import Final, Literal, Protocol, get_args, runtime_checkable
 
 import cv2
 import numpy as np
 
 from app.recognition.errors import EstimatorError
-from app.recognition.estimation.estimator import check_image
-from app.recognition.poses.frame import Image
+from app.recognition.estimation.estimator import PoseEstimator, check_image
+from app.recognition.estimation.factory import finds_hands
+from app.recognition.estimation.landmark_models.body_model import SURE
+from app.recognition.poses.frame import FrameLandmarks, Image
 from app.recognition.poses.sequence import FloatArray
 
 WaterCorrection = Literal["auto", "on", "off"]
@@ -162,3 +175,189 @@ def _balance_and_stretch(pixels: FloatArray) -> Image:
     values = np.arange(256.0)[:, None] * gains
     stretched = np.clip((values - darkest) * stretch, 0, 255).round()
     return np.asarray(stretched[None], np.uint8)
+
+
+WINDOW: Final = 4
+"""Examinations over which scores (`measure_belief`) are averaged: one frame can be hidden by
+bubbles."""
+
+FIRST_PAUSE: Final = 8
+"""Frames between the first examinations, a third of a second: neighbours show the same."""
+
+LONGEST_PAUSE: Final = 256
+"""Frames between examinations once decided. One costs as much as about 12 frames, so all of them
+cost a twentieth."""
+
+PATIENCE: Final = 8
+"""Consecutive frames in doubt before an examination: a hand hidden for a moment does not cause one.
+The first frame is examined at once."""
+
+SEARCHING_PAUSE: Final = 64
+"""The same while nobody is found: two and a half seconds until a diver in murk is seen."""
+
+MARGIN: Final = 0.1
+"""Score by which another correction must exceed the one in use at the first examination of a scene:
+less is noise."""
+
+CHANGE_MARGIN: Final = 0.25
+"""The same at later examinations, since a change restarts the tracking: as much as one more certain
+hand."""
+
+HAND_WEIGHT: Final = 0.25
+"""Weight of a hand's score against the body's; without a body there are no gestures."""
+
+
+class WaterChoice:
+    """Chooses a correction from what the models find; starts with none.
+
+    The pause between examinations doubles from `FIRST_PAUSE` to `LONGEST_PAUSE`, and is short again
+    after a body was lost, as when the scene changes; then the earlier scores are discarded too.
+
+    Parameters
+    ----------
+    hands
+        Whether the estimator finds hands, so that a frame without any is in doubt.
+
+    """
+
+    def __init__(self, *, hands: bool = True) -> None:
+        self._sought = hands
+        self.reset()
+
+    def reset(self) -> None:
+        """Forget everything; no correction is in use."""
+        self.correction: Correction = CORRECTIONS[0]
+        self._beliefs: deque[dict[Correction, float]] = deque(maxlen=WINDOW)
+        self._doubts = PATIENCE
+        self._pause, self._rest = FIRST_PAUSE, 0
+        self._had_body = False
+
+    def needs_examination(self, found: FrameLandmarks) -> bool:
+        """Count a frame, and return whether it should be examined under every correction.
+
+        Parameters
+        ----------
+        found
+            What was found in it under the correction in use.
+
+        """
+        self._rest = max(0, self._rest - 1)
+        self._doubts = self._doubts + 1 if self._is_doubtful(found) else 0
+        if self._had_body and found.body is None:
+            self._pause, self._rest = FIRST_PAUSE, min(self._rest, FIRST_PAUSE)
+            self._beliefs.clear()
+        self._had_body = found.body is not None
+        if self._doubts < PATIENCE or self._rest:
+            return False
+        longest = LONGEST_PAUSE if found.body else SEARCHING_PAUSE
+        self._rest, self._pause = min(self._pause, longest), min(2 * self._pause, longest)
+        return True
+
+    def choose(self, examined: Mapping[Correction, FrameLandmarks]) -> bool:
+        """Process an examination, and return whether another correction is in use now.
+
+        An examination in which nothing is found under any correction is not counted.
+        """
+        beliefs = {one: measure_belief(found) for one, found in examined.items()}
+        if not any(beliefs.values()):
+            return False
+        self._beliefs.append(beliefs)
+        margin = MARGIN if len(self._beliefs) == 1 else CHANGE_MARGIN
+        means = {one: float(np.mean([each[one] for each in self._beliefs])) for one in CORRECTIONS}
+        best = max(CORRECTIONS, key=lambda one: means[one])
+        if means[best] <= means[self.correction] + margin:
+            return False
+        self.correction = best
+        return True
+
+    def _is_doubtful(self, found: FrameLandmarks) -> bool:
+        if found.body is None or (self._sought and not found.hands):
+            return True
+        # A new body was examined once, off the centre of its region: its score means little.
+        return self._had_body and found.body.score < SURE
+
+
+def measure_belief(found: FrameLandmarks) -> float:
+    """Return the combined score of what was found: the body's, and a share of the hands'."""
+    body = found.body.score if found.body else 0.0
+    return body + HAND_WEIGHT * sum(hand.score for hand in found.hands)
+
+
+@runtime_checkable
+class Examiner(Protocol):
+    """Interface of estimators that can examine a single image."""
+
+    def examine(self, image: Image) -> FrameLandmarks:
+        """Find body and hands in `image` alone, without effect on the tracking."""
+
+
+@runtime_checkable
+class Sparing(Protocol):
+    """Interface of estimators that can do less for each frame."""
+
+    def spare(self, *, spares: bool) -> None:
+        """Look at hands less often, or as often as usual."""
+
+
+@runtime_checkable
+class Adopter(Protocol):
+    """Interface of estimators that can search the last frame for further hands."""
+
+    def adopt(self, image: Image) -> FrameLandmarks:
+        """Return the last frame with what examinations of it, and a search in it, have found."""
+
+
+class WaterSight:
+    """Corrects the water in frames, in order, and lets an estimator find the landmarks in them.
+
+    With ``"auto"`` a `WaterChoice` selects the correction with the highest scores of the
+    estimator's models. With an estimator that is no `Examiner`, murky frames are corrected
+    (`correct_colours`).
+
+    Parameters
+    ----------
+    estimator
+        Finds the landmarks; the caller closes it.
+    water
+        ``"auto"``, ``"on"`` or ``"off"``.
+
+    Raises
+    ------
+    EstimatorError
+        When `water` is none of the three.
+
+    """
+
+    def __init__(self, estimator: PoseEstimator, water: WaterCorrection = "auto") -> None:
+        check_water(water)
+        self._estimator = estimator
+        self._water = water
+        self._choice = WaterChoice(hands=finds_hands(estimator))
+
+    def reset(self) -> None:
+        """Reset tracking, smoothing and the choice; call it before another clip."""
+        self._estimator.reset()
+        self._choice.reset()
+
+    def estimate(self, image: Image, time: float) -> FrameLandmarks:
+        """Find the body and the hands in `image`, taken `time` seconds after any fixed moment.
+
+        Raises
+        ------
+        EstimatorError
+            When `image` is not an RGB image of 8 bits.
+
+        """
+        estimator, choice = self._estimator, self._choice
+        if self._water != "auto" or not isinstance(estimator, Examiner):
+            return estimator.estimate(correct_colours(image, self._water), time)
+        found = estimator.estimate(apply_correction(image, choice.correction), time)
+        if not choice.needs_examination(found):
+            return found
+        examined = {one: estimator.examine(apply_correction(image, one)) for one in CORRECTIONS}
+        if choice.choose(examined):
+            estimator.reset()
+            found = estimator.estimate(apply_correction(image, choice.correction), time)
+        if isinstance(estimator, Adopter):
+            return estimator.adopt(apply_correction(image, choice.correction))
+        return found

@@ -19,8 +19,7 @@ import numpy as np
 import numpy.typing as npt
 
 from app.recognition.decision.outcome import is_rejected
-from app.recognition.decision.result import WRITTEN
-from app.recognition.decision.score_table import ScoreTable
+from app.recognition.decision.result import WRITTEN, ScoreTable
 from app.recognition.errors import OsgError, PoseError
 from app.recognition.explanation.blame import Blame
 from app.recognition.explanation.context import RecognitionContext
@@ -32,7 +31,7 @@ from app.recognition.explanation.hand_differences import (
 from app.recognition.explanation.undoing import Comparison, Undone, Where, compare_with
 from app.recognition.gestures.gesture import Gesture
 from app.recognition.poses.trajectory import TURNED_AWAY, Trajectory
-from app.recognition.preprocessing.jumps import find_other_body, find_unsteady
+from app.recognition.preprocessing.outliers import find_other_body, find_unsteady
 from app.recognition.recognizer import Recognizer
 
 EXPLAINED: Final = 0.6

@@ -7,8 +7,7 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 from app.recognition.decision.fused_vote import FusedVote
-from app.recognition.decision.result import Recognition
-from app.recognition.decision.score_table import ScoreTable, Trace
+from app.recognition.decision.result import Recognition, ScoreTable, Trace
 from app.recognition.errors import OsgError
 from app.recognition.explanation.demonstration_faults import DemonstrationFault
 from app.recognition.explanation.strokes import Piece, transcribe, transcribe_gesture

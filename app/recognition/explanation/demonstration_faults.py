@@ -18,8 +18,8 @@ import numpy as np
 from app.recognition.poses.landmarks import WRISTS
 from app.recognition.poses.sequence import FloatArray, PoseSequence
 from app.recognition.poses.trajectory import Trajectory
-from app.recognition.preprocessing.jumps import find_other_body, find_unsteady
 from app.recognition.preprocessing.moving_hands import find_moving_hands, list_moving_sides
+from app.recognition.preprocessing.outliers import find_other_body, find_unsteady
 from app.recognition.preprocessing.repair import repair_poses
 from app.recognition.preprocessing.salience import find_salient_landmarks
 from app.recognition.recording.clip_range import find_clip_range

@@ -19,7 +19,7 @@ import numpy.typing as npt
 from app.recognition.decision.fused_vote import FusedVote
 from app.recognition.decision.fusion import fuse
 from app.recognition.decision.references import SMALLER, Described, References, describe_movement
-from app.recognition.decision.score_table import ScoreTable
+from app.recognition.decision.result import ScoreTable
 from app.recognition.features.motion import (
     SHARES,
     SIZE,

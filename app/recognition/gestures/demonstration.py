@@ -15,13 +15,13 @@ from app.recognition.features.trajectory_image import SIMPLIFICATION, SIZE, Draw
 from app.recognition.poses.landmarks import POSE_LANDMARKS, UPPER_BODY, other_side
 from app.recognition.poses.sequence import FloatArray, PoseSequence
 from app.recognition.poses.trajectory import Trajectory
-from app.recognition.preprocessing.held_hands import rests_between_ends
 from app.recognition.preprocessing.holds import (
     MOST_HOLDS,
     Hold,
     describe_excess,
     find_holds,
     keep_holds,
+    rests_between_ends,
 )
 from app.recognition.preprocessing.moving_hands import find_moving_hands, list_moving_sides
 from app.recognition.preprocessing.quality import find_fault

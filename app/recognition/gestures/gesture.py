@@ -37,11 +37,8 @@ from app.recognition.poses.trajectory import Trajectory
 from app.recognition.text.joiners import is_printable
 from app.recognition.text.look_alikes import compose, skeleton
 from app.recognition.text.strict_json import read_json
-from app.recognition.voters.fourier import HARMONICS, SAMPLES
-from app.recognition.voters.hu import FLOOR
 from app.recognition.voters.registry import PAPER_VOTERS
-from app.recognition.voters.shape_voters import describe_drawing
-from app.recognition.voters.zernike import DEGREE
+from app.recognition.voters.shape_voters import DEGREE, FLOOR, HARMONICS, SAMPLES, describe_drawing
 
 MAX_LABEL_LENGTH = 80
 """Most characters of a label: more than fits on a gesture's card, and still one line of a log."""

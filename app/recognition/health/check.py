@@ -1,18 +1,28 @@
-"""Health check: what a language's own demonstrations tell about it before the dive."""
+"""Health check: what a language's own demonstrations tell about it before the dive.
+
+Embedding: a map of a language's gestures in the plane, with similar gestures close together.
+
+Known signs: gestures that look like a sign which divers already know with another meaning.
+
+Viewing angles: from where a gesture looks like another one, or is not seen to move.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from itertools import count
+from typing import Final
 
 import numpy as np
 
+from app.recognition.decision.result import Recognition
+from app.recognition.errors import PoseError
+from app.recognition.explanation.causes import ALIKE
 from app.recognition.features.hand_image import draw_hands
 from app.recognition.gestures.demonstration import condense
 from app.recognition.gestures.profile import PROFILES
 from app.recognition.health.ambiguity import find_ambiguities
-from app.recognition.health.embedding import embed_gestures
 from app.recognition.health.finding import (
     DUPLICATE,
     Finding,
@@ -20,17 +30,17 @@ from app.recognition.health.finding import (
     measure_visible_share,
 )
 from app.recognition.health.forecast import Forecast, make_forecast, measure_curve
-from app.recognition.health.known_signs import find_known_signs
 from app.recognition.health.report import (
     GestureHealth,
     HealthReport,
     LandmarkHealth,
     LimitHealth,
+    check_trigger,
+    list_trigger_findings,
 )
-from app.recognition.health.trigger_health import check_trigger, list_trigger_findings
-from app.recognition.health.viewing_angles import find_blind_angles
 from app.recognition.language.language import Language
 from app.recognition.poses.sequence import FloatArray
+from app.recognition.poses.trajectory import Trajectory
 from app.recognition.preprocessing.salience import measure_displacements
 from app.recognition.recognizer import Recognizer
 from app.recognition.text.look_alikes import are_confusable, list_look_alikes
@@ -260,3 +270,147 @@ def _profile_findings(language: Language) -> Iterator[Finding]:
             "report is for the profile full: choose the profile full before a dive"
         )
         yield Finding("unrejecting", (), message, error=True)
+
+
+def embed_gestures(distances: FloatArray) -> FloatArray:
+    """Embed gestures in the plane by classical multidimensional scaling (Torgerson 1952).
+
+    Parameters
+    ----------
+    distances
+        ``(G, G)`` >= 0, of each gesture (row) to each other one. Both directions are averaged;
+        infinite ones count as the largest finite one.
+
+    Returns
+    -------
+    ``(G, 2)`` in the unit of the distances, centred at 0, the wider spread along x; the best
+    approximation in two dimensions. The sign of an axis is such that its farthest gesture is
+    positive, so that the same distances give the same map.
+
+    """
+    finite = np.isfinite(distances)
+    far = float(distances[finite].max(initial=0.0)) or 1.0
+    known = np.where(finite, distances, far)
+    even = (known + known.T) / 2
+    np.fill_diagonal(even, 0.0)
+    count = len(even)
+    centring = np.eye(count) - 1 / max(count, 1)
+    values, vectors = np.linalg.eigh(-centring @ even**2 @ centring / 2)
+    place = np.zeros((count, 2))
+    for axis, index in enumerate(range(count - 1, max(count - 3, -1), -1)):
+        along = vectors[:, index] * np.sqrt(max(float(values[index]), 0.0))
+        place[:, axis] = along * (np.sign(along[np.abs(along).argmax()]) or 1.0)
+    return place
+
+
+def find_known_signs(
+    language: Language, known: Language, advance: Callable[[], None] = lambda: None
+) -> Iterator[Finding]:
+    """Yield one finding for each gesture that is much like one of the known signs.
+
+    Each demonstration is recognised by profile ``full`` among the known signs, as if it were a
+    take. A gesture with the label of the sign is meant to be that sign.
+
+    Parameters
+    ----------
+    language
+        The language to check.
+    known
+        The signs that divers know, each with its meaning as description.
+    advance
+        Called after each gesture; an exception that it raises ends the work.
+
+    """
+    if not known.gestures:
+        return
+    recognizer = Recognizer(known, "full")
+    meanings = {gesture.label: gesture.description for gesture in known.gestures}
+    for gesture in language.gestures:
+        read = [_recognize(recognizer, shown) for shown in gesture.trajectories]
+        # Whether it is accepted does not matter: a pair looks like a sign too, and of gestures that
+        # a language lacks every second one is accepted.
+        signs = [each.nearest for each in read if each and each.nearest_novelty < ALIKE]
+        own = gesture.label.casefold()
+        sign = next((each for each in signs if each.casefold() != own), None)
+        if sign is not None:
+            meaning = f' ("{meanings[sign]}")' if meanings[sign] else ""
+            yield Finding(
+                "known_sign",
+                (gesture.label,),
+                f"{gesture.label} looks like the divers' sign {sign}{meaning}: a diver may show "
+                "that sign to another one, and the robot acts on it; choose another movement, or "
+                "give the gesture the sign's meaning",
+            )
+        advance()
+
+
+def _recognize(recognizer: Recognizer, shown: Trajectory) -> Recognition | None:
+    try:
+        return recognizer.recognize_trajectory(condense(shown))
+    except PoseError:  # no landmark that a sign needs moves
+        return None
+
+
+ANGLES: Final = (-60, -30, 30, 60)
+"""Degrees by which the diver is turned from the demonstration, positive to the diver's own left.
+Beyond, the far arm is hidden in any language."""
+
+
+def find_blind_angles(
+    recognizer: Recognizer, advance: Callable[[], None] = lambda: None
+) -> Iterator[Finding]:
+    """Yield a finding for each gesture that is another one, or lost, when the diver is turned.
+
+    The demonstration itself is turned by its depth; gestures without depth cannot be turned.
+
+    Parameters
+    ----------
+    recognizer
+        Of the language, profile ``full``.
+    advance
+        Called after each comparison; an exception that it raises ends the work.
+
+    """
+    labels = recognizer.language.labels
+    for own, gesture in enumerate(recognizer.language.gestures):
+        shown = gesture.trajectory
+        if shown is None or shown.facing is None or gesture.is_held:
+            continue
+        lost: list[int] = []
+        like: dict[str, list[int]] = {}
+        ahead = recognizer.compare(condense(shown)).scores
+        for degrees in ANGLES:
+            scores = recognizer.compare(condense(shown.turn(degrees))).scores
+            advance()
+            if not np.isfinite(scores[own]):
+                lost.append(degrees)
+            # Of gestures that are the same straight ahead, the duplicate is the finding.
+            for other in np.flatnonzero((scores < DUPLICATE) & (ahead >= DUPLICATE)).tolist():
+                like.setdefault(labels[other], []).append(degrees)
+        if lost:
+            yield _blind((gesture.label,), "is not seen to move", lost)
+        for name, turns in like.items():
+            yield _blind((gesture.label, name), f"is the same movement as {name}", turns)
+
+
+def _blind(gestures: tuple[str, ...], what: str, turns: Sequence[int]) -> Finding:
+    message = (
+        f"{gestures[0]} {what} when the diver is turned by {list_turns(turns)}: face the camera, "
+        "or change the gesture"
+    )
+    return Finding("blind_angle", gestures, message)
+
+
+def list_turns(turns: Sequence[int]) -> str:
+    """Return turns in words, such as ``30 or 60 degrees to the left``."""
+    sides = {
+        side: sorted(abs(turn) for turn in turns if (turn > 0) == (side == "left"))
+        for side in ("left", "right")
+    }
+    if sides["left"] == sides["right"]:
+        return f"{' or '.join(map(str, sides['left']))} degrees to either side"
+    return " and ".join(
+        f"{' or '.join(map(str, degrees))} degrees to the {side}"
+        for side, degrees in sides.items()
+        if degrees
+    )

@@ -2,6 +2,10 @@
 
 The JSON Schema published in `schema/` is generated from them and from the docstrings below their
 attributes.
+
+Tuning entry: conversion of tunings to and from their entry in the language file.
+
+Trigger entry of a language file, and its schema.
 """
 
 from __future__ import annotations
@@ -11,14 +15,46 @@ from typing import Annotated, Any, Final, Literal
 from pydantic import BaseModel, Field
 
 from app.recognition.decision.outcome import MOST_REFUSED_AT_ALL
+from app.recognition.errors import point_to
+from app.recognition.features.trajectory_image import SIMPLIFICATION
 from app.recognition.gestures.demonstration import MAX_DEMONSTRATIONS, MAX_DIVER_LENGTH
-from app.recognition.gestures.profile import DEFAULT_PROFILE, ProfileName
+from app.recognition.gestures.profile import DEFAULT_PROFILE, ProfileName, find_profile
 from app.recognition.gestures.switches import Switch
-from app.recognition.gestures.tuning import MAX_FACTOR, MAX_SIMPLIFICATION
+from app.recognition.gestures.tuning import AS_THE_PROFILE, MAX_FACTOR, MAX_SIMPLIFICATION, Tuning
 from app.recognition.language.grammar_entry import FiniteFloat, GrammarEntry, Name, Text
-from app.recognition.language.trigger_entry import TriggerEntry
 from app.recognition.poses.landmarks import HAND_LANDMARKS
 from app.recognition.text.described import STRICT
+from app.recognition.triggers.arm_pose import ArmPose
+from app.recognition.triggers.trigger import SALUTE, Trigger, TriggerKind
+from app.recognition.voters.registry import FORMER_VOTERS, PAPER_VOTERS
+
+
+def tuning_to_entry(tuning: Tuning) -> TuningEntry | None:
+    """Return the file's entry of a tuning; None if it changes nothing."""
+    if tuning == AS_THE_PROFILE:
+        return None
+    return TuningEntry(
+        weights=dict(tuning.weights),
+        simplification=(None if tuning.simplification == SIMPLIFICATION else tuning.simplification),
+        keypoints_repaired=tuning.keypoints_repaired,
+    )
+
+
+def entry_to_tuning(entry: TuningEntry | None, profile: ProfileName = "paper") -> Tuning:
+    """Return the tuning of an entry, or the default without one.
+
+    Weight factors for voters that the profile had in an earlier version are left out.
+    """
+    if entry is None:
+        return AS_THE_PROFILE
+    former = FORMER_VOTERS | {voter.name for voter in PAPER_VOTERS}
+    former -= {voter.name for voter in find_profile(profile).voters}
+    return Tuning(
+        weights={voter: factor for voter, factor in entry.weights.items() if voter not in former},
+        simplification=SIMPLIFICATION if entry.simplification is None else entry.simplification,
+        keypoints_repaired=entry.keypoints_repaired,
+    )
+
 
 FORMAT: Final = "osg-studio/gesture-language"
 VERSION: Final = 1
@@ -43,6 +79,72 @@ HandCoordinates = Annotated[
 
 class _Model(BaseModel):
     model_config = STRICT
+
+
+Coordinate = Annotated[float, Field(allow_inf_nan=False, ge=-10, le=10)]
+
+PlaceEntry = Annotated[list[Coordinate], Field(min_length=2, max_length=2)]
+
+
+class ArmPoseEntry(_Model):
+    """A pose of the arms: where elbows and wrists are held.
+
+    Each place is x to the image's right and y down from the middle of the shoulders, in torso
+    lengths.
+    """
+
+    left_elbow: PlaceEntry
+    left_wrist: PlaceEntry
+    right_elbow: PlaceEntry
+    right_wrist: PlaceEntry
+
+
+class TriggerEntry(_Model):
+    """What begins and ends a take."""
+
+    kind: TriggerKind
+    """salute: a Vulcan salute. pose: a held pose of the arms. gesture: a gesture of the language.
+    none: nothing, gestures are found anywhere."""
+    start: ArmPoseEntry | None = None
+    """Of kind pose, the pose that begins a take."""
+    stop: ArmPoseEntry | None = None
+    """The pose that ends it. Left out when it is the one that begins it."""
+    start_label: str = ""
+    """Of kind gesture, the label of the gesture that begins a take."""
+    stop_label: str = ""
+    """Label of the gesture that ends it. Left out when it is the same."""
+
+
+def trigger_to_entry(trigger: Trigger) -> TriggerEntry | None:
+    """Return the file's entry of a trigger; None for the salute."""
+    if trigger == SALUTE:
+        return None
+    poses = (trigger.start, trigger.stop)
+    start, stop = (None if pose is None else _pose_to_entry(pose) for pose in poses)
+    stop_label = "" if trigger.stop_label == trigger.start_label else trigger.stop_label
+    return TriggerEntry(**vars(trigger) | {"start": start, "stop": stop, "stop_label": stop_label})
+
+
+def entry_to_trigger(entry: TriggerEntry | None) -> Trigger:
+    """Return the trigger of a file's entry, or the salute without one.
+
+    Raises
+    ------
+    LanguageError
+        When poses are missing, superfluous, unusable or too much alike.
+
+    """
+    if entry is None:
+        return SALUTE
+    with point_to("/trigger"):
+        poses = (entry.start, entry.stop)
+        start, stop = (pose and ArmPose.of_joints(pose.model_dump()) for pose in poses)
+        read: dict[str, Any] = vars(entry) | {"start": start, "stop": stop}
+        return Trigger(**read)
+
+
+def _pose_to_entry(pose: ArmPose) -> ArmPoseEntry:
+    return ArmPoseEntry(**{name: list(place) for name, place in pose.joints.items()})
 
 
 class PathEntry(_Model):

@@ -20,11 +20,13 @@ from app.recognition.language.file_schema import (
     MAX_GESTURES,
     VERSION,
     LanguageDocument,
+    entry_to_trigger,
+    entry_to_tuning,
+    trigger_to_entry,
+    tuning_to_entry,
 )
 from app.recognition.language.gesture_entry import entry_to_gesture, gesture_to_entry
 from app.recognition.language.grammar_entry import entry_to_grammar, grammar_to_entry
-from app.recognition.language.trigger_entry import entry_to_trigger, trigger_to_entry
-from app.recognition.language.tuning_entry import entry_to_tuning, tuning_to_entry
 from app.recognition.phrases.grammar import Grammar
 from app.recognition.poses.landmarks import SKELETON
 from app.recognition.text.atomic_files import write_atomically

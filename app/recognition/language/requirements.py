@@ -11,7 +11,7 @@ import numpy as np
 from app.recognition.errors import LandmarkError
 from app.recognition.features.motion import find_followed_landmarks, list_limbs
 from app.recognition.language.language import Language
-from app.recognition.models import ModelName
+from app.recognition.models.storage import ModelName
 from app.recognition.poses.landmarks import HIPS, SHOULDERS
 from app.recognition.poses.sequence import PoseSequence
 

@@ -11,7 +11,7 @@ from app.recognition.features.motion import parse_body_part
 from app.recognition.poses.frame import SIDES, Side
 from app.recognition.poses.hand_shape import HandShape, choose_frames, normalize_hands
 from app.recognition.poses.sequence import FloatArray, PoseSequence
-from app.recognition.preprocessing.held_hands import MOST_CHANGE, measure_distances
+from app.recognition.preprocessing.holds import MOST_CHANGE, measure_distances
 
 LEAST_SEEN: Final = 0.25
 """Least share of the frames in which a moving hand is seen: the hand model loses quick hands, and

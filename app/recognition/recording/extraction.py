@@ -1,8 +1,13 @@
-"""Extraction: runs a pose estimator on every frame of a clip and keeps the landmarks."""
+"""Extraction: runs a pose estimator on every frame of a clip and keeps the landmarks.
+
+Picture turn: by how much pictures must be turned for the diver to be upright in them.
+
+Missing salutes: why the report of a clip's quality finds no take between two salutes.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import closing, nullcontext
 from pathlib import Path
@@ -11,19 +16,23 @@ from typing import Final, TypedDict
 import numpy as np
 from typing_extensions import Unpack
 
-from app.recognition.estimation import create_estimator, finds_hands, list_landmarks
 from app.recognition.estimation.estimator import PoseEstimator
-from app.recognition.estimation.water import WaterCorrection
-from app.recognition.estimation.water_sight import WaterSight
+from app.recognition.estimation.factory import create_estimator, finds_hands, list_landmarks
+from app.recognition.estimation.water import WaterCorrection, WaterSight
 from app.recognition.poses.frame import FrameLandmarks, Hand
-from app.recognition.poses.landmarks import POSE_LANDMARKS, WRISTS
-from app.recognition.poses.sequence import PoseSequence, join_sequences
+from app.recognition.poses.landmarks import HIPS, POSE_LANDMARKS, SHOULDERS, WRISTS
+from app.recognition.poses.sequence import FloatArray, PoseSequence, join_sequences
 from app.recognition.poses.skeletons import find_missing_landmarks
-from app.recognition.recording.hand_sides import place_hands
-from app.recognition.recording.missing_salutes import explain_missing_salutes
+from app.recognition.poses.trajectory import TURNED_AWAY, Trajectory
 from app.recognition.recording.people import People, keep_person, see_people
-from app.recognition.recording.picture_turn import HEAD_POINTS, find_turn
-from app.recognition.recording.recording import Recording
+from app.recognition.recording.recording import Recording, place_hands
+from app.recognition.recording.salute import (
+    DROPOUT_SECONDS,
+    ENTER_SCORE,
+    FEW_HANDS,
+    SHORTEST_TAKE,
+    find_held,
+)
 from app.recognition.recording.unseen import tell_clock
 from app.recognition.recording.video import (
     FrameSource,
@@ -33,6 +42,148 @@ from app.recognition.recording.video import (
     read_frames,
 )
 from app.recognition.recording.video_limits import VideoLimits
+
+
+def explain_missing_salutes(
+    poses: PoseSequence,
+    scores: FloatArray,
+    hands: Sequence[Sequence[Hand]],
+    without_fingers: int = 0,
+    odd: Sequence[str] = (),
+) -> Iterator[str]:
+    """Yield why a take has no salutes around it, with a remedy; nothing where both were held.
+
+    Parameters
+    ----------
+    poses
+        Of T frames.
+    scores
+        ``(T,)`` scores of the best hand in each frame.
+    hands
+        Per frame the hands that were found.
+    without_fingers
+        Number of the other frames in which the place of a hand was found.
+    odd
+        What is odd about the file or its clock, and may be the reason.
+
+    """
+    if odd and len(find_held(poses.time, scores)) < 2:
+        yield f"two salutes were not seen, and something else is odd: {odd[0]}"
+        return
+    frames, with_hand = len(hands), sum(map(bool, hands))
+    seen = with_hand + without_fingers
+    facing = Trajectory.from_poses(poses).facing if poses.seen.any() else None
+    if scores.max(initial=0.0) > ENTER_SCORE:
+        yield from _describe_missed_salute(poses.time, scores, hands)
+    elif facing is not None and abs(facing) >= TURNED_AWAY:
+        yield (
+            f"no salute in any of {frames} frames: the diver is turned {abs(facing):.0f} degrees "
+            "away; face the camera"
+        )
+    elif with_hand < FEW_HANDS * frames <= seen:
+        yield (
+            f"hands seen in {seen / frames:.0%} of {frames} frames, their fingers in "
+            f"{with_hand / frames:.0%}: gloves? Choose a trigger of the arms"
+        )
+    elif not with_hand:
+        yield (
+            f"no hand in any of {frames} frames, so no salute can be seen; choose the "
+            "gesture's range by hand, choose a trigger of the arms, or film from nearer"
+        )
+    elif with_hand < FEW_HANDS * frames:
+        yield (
+            f"hands seen in {with_hand / frames:.0%} of {frames} frames: choose a trigger of "
+            "the arms, or film from nearer"
+        )
+    else:
+        yield (
+            f"no salute in any of {frames} frames; choose the gesture's range by hand, or "
+            "salute with the palm or back of the hand towards the camera"
+        )
+
+
+def _describe_missed_salute(
+    time: FloatArray, scores: FloatArray, hands: Sequence[Sequence[Hand]]
+) -> Iterator[str]:
+    """Yield which of the two salutes around a take was not seen, when, and in how many frames.
+
+    Parameters as in `explain_missing_salutes`.
+    """
+    held = find_held(time, scores)
+    seen = scores >= ENTER_SCORE
+    if len(held) > 1:
+        return
+    name, told, missing = "salute", "no salute was held for long enough", np.ones_like(seen)
+    if held:
+        ((start, end),) = held
+        is_first = end - time[0] < time[-1] - start
+        name, other = ("second", "first") if is_first else ("first", "second")
+        told = f"the {other} salute was seen at {start:.1f} to {end:.1f} s"
+        missing = time > end + DROPOUT_SECONDS if is_first else time < start - DROPOUT_SECONDS
+    if not missing.any():
+        return
+    # Where on that side a salute is seen most, for as long as a take lasts at least.
+    there = np.flatnonzero(missing)
+    ends = np.searchsorted(time[there], time[there] + SHORTEST_TAKE)
+    before = np.concatenate([[0], np.cumsum(seen[there])])
+    counts = before[ends] - before[:-1]
+    at = int(counts.argmax())
+    if counts[at]:
+        span = f"{time[there[at]]:.1f} to {time[there[ends[at] - 1]]:.1f} s"
+        in_part = f"seen in {counts[at]} of {ends[at] - at} frames at {span}"
+    else:
+        with_hand = sum(bool(hands[each]) for each in there.tolist())
+        in_part = f"not seen; a hand was in {with_hand} of {len(there)} frames there"
+    what = f"the {name} one was" if held else "one was"
+    yield f"{told}; {what} {in_part}; hold both salutes longer, and nearer to the camera"
+
+
+TURNED_SHARE: Final = 0.8
+"""Share of the frames with a body in which it must lie in one direction, to be called turned."""
+
+TURNED_DEGREES, MOST_LEAN = 40.0, 60.0
+"""Farthest of a torso from a quarter turn, in the median and in these frames: divers lean a little,
+and bend, whatever way up they are."""
+
+LEAST_TORSO: Final = 0.5
+"""Least length of a torso in shoulder widths: that of somebody who points at the camera is short,
+and its direction says nothing."""
+
+FEWEST_TURNED: Final = 10
+"""Fewest frames with a body from which it is told."""
+
+HEAD_POINTS: Final[dict[Turn, str]] = {
+    90: "lies on the side, the head to the left,",
+    180: "is upside down",
+    270: "lies on the side, the head to the right,",
+}
+"""How a diver is seen in a picture that must be turned by so much."""
+
+
+def find_turn(poses: PoseSequence) -> Turn:
+    """Return by how much the picture must be turned for the person to stand upright in it.
+
+    0 where shoulders and hips do not lie sideways or upside down in nearly all frames.
+    """
+    if not {*SHOULDERS, *HIPS} <= set(poses.landmarks):
+        return 0
+    shoulders, hips = poses.select(SHOULDERS).xy, poses.select(HIPS).xy
+    up = shoulders.mean(axis=1) - hips.mean(axis=1)
+    width = np.hypot(*(shoulders[:, 0] - shoulders[:, 1]).T)
+    length = np.hypot(*up.T)
+    # The comparisons are False for NaN.
+    up = up[(length > 0) & (length >= LEAST_TORSO * width)]
+    if len(up) < FEWEST_TURNED:
+        return 0
+    # Clockwise in the picture, whose y points down, from upwards.
+    lean = np.degrees(np.arctan2(up[:, 0], -up[:, 1]))
+    for turn in HEAD_POINTS:
+        off = (lean + turn + 180) % 360 - 180
+        steady = (np.abs(off) <= MOST_LEAN).mean() >= TURNED_SHARE
+        if steady and abs(np.median(off)) <= TURNED_DEGREES:
+            return turn
+    return 0
+
 
 NOBODY: Final = FrameLandmarks(None, ())
 

@@ -1,7 +1,7 @@
 """People: whose body counts where several are seen.
 
 The body belongs to the hand that salutes: the person is chosen over the whole recording, take by
-take. Where nobody salutes, it is the person who stands out most. `people_in_stream` chooses where
+take. Where nobody salutes, it is the person who stands out most. `live_segmentation` chooses where
 the future is not known.
 """
 

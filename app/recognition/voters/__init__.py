@@ -1,1 +1,1 @@
-"""Voters: one module each, with the voter's distance and constants; `registry` lists them."""
+"""Voters: one class each, with the voter's distance and constants; `registry` lists them."""

@@ -1,17 +1,15 @@
-"""Voter registry: all voters in the order of results. A new voter is a module and a line here."""
+"""Voter registry: all voters in the order of results. A new voter is a class and a line here."""
 
 from __future__ import annotations
 
 from typing import Final
 
-from app.recognition.voters.fourier import FourierDescriptors
 from app.recognition.voters.hand_voters import (
     FingerDirections,
     FingertipDistances,
     HandLandmarks,
     HandVoter,
 )
-from app.recognition.voters.hu import HuMoments
 from app.recognition.voters.motion_voters import (
     MotionVoter,
     Path,
@@ -19,16 +17,18 @@ from app.recognition.voters.motion_voters import (
     SecondOpinion,
     Tempo,
     Velocity,
+    WristBend,
 )
 from app.recognition.voters.shape_voters import (
     AspectRatio,
     Circularity,
+    FourierDescriptors,
+    HuMoments,
     PathComplexity,
     ShapeVoter,
     Solidity,
+    ZernikeMoments,
 )
-from app.recognition.voters.wrist_bend import WristBend
-from app.recognition.voters.zernike import ZernikeMoments
 
 PAPER_VOTERS: Final[tuple[ShapeVoter, ...]] = (
     HuMoments(),

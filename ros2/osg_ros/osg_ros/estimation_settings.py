@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Final, get_args
 
-from app.recognition.estimation import Provider
 from app.recognition.estimation.factory import MEDIAPIPE_HANDS
+from app.recognition.estimation.landmark_models.onnx_session import Provider
 from app.recognition.estimation.water import WaterCorrection
 from osg_ros.parameters import Setting
 

@@ -17,7 +17,7 @@ from app.api.routes.gestures import previews
 from app.api.routes.languages import pair_differences
 from app.api.services.running_studio import MOST_COMPUTATIONS
 from app.recognition import Language
-from app.recognition.explanation.pair_difference import compare_pair
+from app.recognition.explanation.alignment import compare_pair
 from app.recognition.recognizer import Recognizer
 from tests.api.languages import LANGUAGES
 from tests.api.running import Running, client_of, until

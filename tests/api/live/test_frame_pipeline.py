@@ -10,8 +10,7 @@ import pytest
 
 from app.api.live.frame_pipeline import Frame, FramePipeline, Recognized, Seen, answer_of
 from app.recognition import OsgError, Recognizer, takes_in
-from app.recognition.estimation import create_estimator
-from app.recognition.estimation.factory import NO_HANDS
+from app.recognition.estimation.factory import NO_HANDS, create_estimator
 from app.recognition.triggers.trigger import NO_TRIGGER, Trigger
 from tests.api.live.test_socket import frames_of
 from tests.api.recordings import recording_of

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from app.recognition.estimation import Image
+from app.recognition.poses.frame import Image
 from benchmarks.accuracy.underwater import WATER_COLOUR, degrade
 
 

@@ -9,8 +9,8 @@ import cv2
 import numpy as np
 import pytest
 
-from app.recognition.estimation import create_estimator
-from app.recognition.estimation.water_sight import WaterSight
+from app.recognition.estimation.factory import create_estimator
+from app.recognition.estimation.water import WaterSight
 from app.recognition.poses.frame import Body, FrameLandmarks, Hand
 from benchmarks.accuracy.water_stills import (
     Score,

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from app.recognition.estimation import FrameLandmarks, Image
+from app.recognition.poses.frame import FrameLandmarks, Image
 from app.recognition.recording.live_segmentation import LONGEST_TRIGGER
 from app.recognition.recording.segmentation import LONGEST_TAKE
 from app.robot import Frame, Notice, TriggerListener

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 
-from app.recognition.estimation import create_estimator
+from app.recognition.estimation.factory import create_estimator
 from app.resources import samples_dir
 from app.robot import TriggerListener, open_source
 from benchmarks.cost.stages import (

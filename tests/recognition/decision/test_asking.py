@@ -9,8 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from app.recognition import Gesture, Language, Recognition, Recognizer
-from app.recognition.decision.confidence import SURE
-from app.recognition.decision.outcome import ASK_RATIO, find_answer
+from app.recognition.decision.outcome import ASK_RATIO, SURE, find_answer
 from app.recognition.gestures.tuning import Tuning
 from tests.recognition.strategies import circle, line, recording, square, wedge
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from app.recognition.decision.confidence import estimate_confidence
+from app.recognition.decision.outcome import estimate_confidence
 
 
 def test_confidence_falls_with_novelty_and_with_a_second_gesture_near() -> None:

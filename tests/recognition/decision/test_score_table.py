@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 
 from app.recognition import Gesture, Language, PoseSequence, Recognizer
-from app.recognition.decision.score_table import ScoreTable
+from app.recognition.decision.result import ScoreTable
 from app.recognition.gestures.demonstration import condense
 from app.recognition.gestures.profile import PROFILES
 from app.recognition.gestures.switches import Switches

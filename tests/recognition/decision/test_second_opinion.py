@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from app.recognition import Gesture, Language, PoseSequence, Recognizer
-from app.recognition.decision.score_table import ScoreTable
-from app.recognition.decision.second_opinion import AGREED, OPINION_EXPONENT, ORDER_RATIO, hear
+from app.recognition.decision.fusion import AGREED, OPINION_EXPONENT, ORDER_RATIO, hear
+from app.recognition.decision.result import ScoreTable
 from app.recognition.gestures.tuning import Tuning
 from tests.recognition.strategies import SHAPES, circle, recording, square, wedge
 

@@ -17,14 +17,10 @@ from pathlib import Path
 
 import numpy as np
 
-from app.recognition.estimation import (
-    FrameLandmarks,
-    Hand,
-    Image,
-    MediaPipeEstimator,
-    OnnxPoseEstimator,
-    PoseEstimator,
-)
+from app.recognition.estimation.estimator import PoseEstimator
+from app.recognition.estimation.mediapipe_estimator import MediaPipeEstimator
+from app.recognition.estimation.onnx_estimator import OnnxPoseEstimator
+from app.recognition.poses.frame import FrameLandmarks, Hand, Image
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.recording.video import VideoFrame
 from tests.recognition.estimation.clip_frames import clip_frames

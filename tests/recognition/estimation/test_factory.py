@@ -9,7 +9,8 @@ from typing import Any, cast
 import pytest
 
 from app.recognition.errors import EstimatorError, ModelError
-from app.recognition.estimation import OnnxPoseEstimator, create_estimator
+from app.recognition.estimation.factory import create_estimator
+from app.recognition.estimation.onnx_estimator import OnnxPoseEstimator
 
 
 @pytest.mark.usefixtures("installed_models")

@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from app.recognition.errors import EstimatorError
-from app.recognition.estimation import FrameLandmarks, Image, OnnxPoseEstimator
+from app.recognition.estimation.onnx_estimator import OnnxPoseEstimator
+from app.recognition.poses.frame import FrameLandmarks, Image
 from app.recognition.poses.landmarks import POSE_LANDMARKS
 from app.recognition.recording.video import VideoFrame
 from tests.recognition.estimation.clip_frames import clip_frames

@@ -11,7 +11,6 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from app.recognition.errors import EstimatorError
-from app.recognition.estimation import Image
 from app.recognition.estimation.water import (
     CORRECTIONS,
     LUMA,
@@ -20,6 +19,7 @@ from app.recognition.estimation.water import (
     correct_colours,
     is_murky,
 )
+from app.recognition.poses.frame import Image
 
 COLOURS = st.tuples(st.integers(0, 255), st.integers(0, 255), st.integers(0, 255))
 

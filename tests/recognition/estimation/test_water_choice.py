@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import numpy as np
 
-from app.recognition.estimation.water import CORRECTIONS, Correction
-from app.recognition.estimation.water_choice import (
+from app.recognition.estimation.water import (
+    CORRECTIONS,
     FIRST_PAUSE,
     LONGEST_PAUSE,
     MARGIN,
     PATIENCE,
     SEARCHING_PAUSE,
+    Correction,
     WaterChoice,
     measure_belief,
 )

@@ -9,12 +9,10 @@ import numpy as np
 import pytest
 
 from app.recognition.errors import EstimatorError
-from app.recognition.estimation import FrameLandmarks, OnnxPoseEstimator
-from app.recognition.estimation.composed_estimator import ComposedEstimator, TrackedHands
-from app.recognition.estimation.onnx_estimator import body_tracker, hand_tracker
-from app.recognition.estimation.water import is_murky
-from app.recognition.estimation.water_sight import WaterSight
-from app.recognition.poses.frame import Image
+from app.recognition.estimation.factory import ComposedEstimator, TrackedHands
+from app.recognition.estimation.onnx_estimator import OnnxPoseEstimator, body_tracker, hand_tracker
+from app.recognition.estimation.water import WaterSight, is_murky
+from app.recognition.poses.frame import FrameLandmarks, Image
 from app.recognition.poses.landmarks import POSE_LANDMARKS
 from app.recognition.recording.video import VideoFrame
 from benchmarks.accuracy.underwater import degrade

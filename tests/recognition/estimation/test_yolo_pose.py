@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from app.recognition.errors import EstimatorError, ModelError
-from app.recognition.estimation import create_estimator, finds_hands, list_landmarks
-from app.recognition.estimation.water_sight import Examiner
+from app.recognition.estimation.factory import create_estimator, finds_hands, list_landmarks
+from app.recognition.estimation.water import Examiner
 from app.recognition.estimation.yolo_pose import YoloPose, decode_people
 from app.recognition.poses.frame import Body, Image
 from app.recognition.poses.landmarks import POSE_LANDMARKS
@@ -129,7 +129,7 @@ def test_detection_models_and_batches_are_refused_with_their_shape(shape: tuple[
 
 @pytest.mark.usefixtures("installed_models")
 def test_a_model_that_takes_no_planes_is_told_by_the_shape_it_takes() -> None:
-    from app.recognition.models import model_path
+    from app.recognition.models.storage import model_path
 
     with pytest.raises(ModelError, match=r"takes \[\(\(1, 256, 256, 3\).*\(1, 3, height, width\)"):
         YoloPose(model_path("pose_landmark_full"))

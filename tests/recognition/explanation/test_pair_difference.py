@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from app.recognition import Gesture, Language, Recognizer
-from app.recognition.explanation.pair_difference import compare_pair, describe_act
+from app.recognition.explanation.alignment import compare_pair, describe_act
 from app.recognition.explanation.strokes import Piece, PieceKind
 from app.recognition.poses.sequence import FloatArray
 from tests.recognition.demonstrations import pool, shown

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.recognition.features.morphology import close_image
+from app.recognition.features.contour import close_image
 
 
 @given(

@@ -4,7 +4,7 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.recognition.health.embedding import embed_gestures
+from app.recognition.health.check import embed_gestures
 
 
 def between(places: np.ndarray) -> np.ndarray:

@@ -18,7 +18,7 @@ from app.recognition.health.forecast import (
     make_forecast,
     measure_curve,
 )
-from app.recognition.health.rate import Rate
+from app.recognition.health.verdict import Rate
 from tests.recognition.demonstrations import pool, shown_by, with_wrong_take
 from tests.recognition.held_takes import FIST, FLAT, hold
 from tests.recognition.strategies import SHAPES, circle, line, recording

@@ -3,8 +3,7 @@
 from dataclasses import replace
 
 from app.recognition import Language
-from app.recognition.health.check import check_health
-from app.recognition.health.known_signs import find_known_signs
+from app.recognition.health.check import check_health, find_known_signs
 from tests.recognition.demonstrations import ARMS, pool
 from tests.recognition.strategies import circle, line, recording
 

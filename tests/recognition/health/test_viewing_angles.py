@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from app.recognition import Gesture, Language, Recognizer, check_health
-from app.recognition.health.viewing_angles import ANGLES, find_blind_angles, list_turns
+from app.recognition.health.check import ANGLES, find_blind_angles, list_turns
 from app.recognition.poses.sequence import FloatArray, PoseSequence
 from tests.recognition.strategies import SHAPES, circle, in_space, known, recording
 

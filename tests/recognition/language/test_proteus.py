@@ -6,7 +6,7 @@ from xml.etree import ElementTree
 import pytest
 
 from app.recognition import Gesture, Language
-from app.recognition.language.proteus import to_proteus
+from app.recognition.language.export_format import to_proteus
 from app.recognition.phrases.phrase import SlotType
 from tests.recognition.grammars import MISSIONS
 from tests.recognition.strategies import circle, recording

@@ -11,9 +11,9 @@ from app.recognition.matching.dtw import (
     DtwReferences,
     dtw_distances,
     dtw_pairs,
+    step_distances,
 )
 from app.recognition.matching.dtw_kernel import compute_alignment_costs
-from app.recognition.matching.step_distances import step_distances
 from app.recognition.poses.sequence import FloatArray
 
 

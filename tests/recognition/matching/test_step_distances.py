@@ -4,7 +4,7 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.recognition.matching.step_distances import step_distances
+from app.recognition.matching.dtw import step_distances
 
 
 @given(

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from app.recognition.models import export_models
+from app.recognition.models.storage import export_models
 
 
 @pytest.fixture(scope="session")

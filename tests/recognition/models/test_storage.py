@@ -7,7 +7,12 @@ from typing import get_args
 import pytest
 
 from app.recognition.errors import ModelError
-from app.recognition.models import (
+from app.recognition.models.storage import (
+    GLOVED_HANDS,
+    HAND_FINDER,
+    PACKAGED,
+    TAUGHT,
+    TAUGHT_FILES,
     ModelName,
     TaskBundleName,
     export_models,
@@ -18,9 +23,8 @@ from app.recognition.models import (
     model_path,
     models_dir,
     task_bundle_path,
+    write_file,
 )
-from app.recognition.models.catalogue import GLOVED_HANDS, HAND_FINDER, TAUGHT_FILES
-from app.recognition.models.storage import PACKAGED, TAUGHT, write_file
 
 NAMES: tuple[ModelName, ...] = get_args(ModelName)
 BUNDLES: tuple[TaskBundleName, ...] = get_args(TaskBundleName)

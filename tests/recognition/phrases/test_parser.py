@@ -8,8 +8,7 @@ from hypothesis import strategies as st
 
 from app.recognition.health.ambiguity import find_ambiguities
 from app.recognition.phrases.grammar import Grammar
-from app.recognition.phrases.interpretation import interpret_message
-from app.recognition.phrases.parser import PhraseEvent, PhraseParser
+from app.recognition.phrases.parser import PhraseEvent, PhraseParser, interpret_message
 from app.recognition.phrases.phrase import Phrase, Slot
 from tests.recognition.grammars import LABELS, MISSIONS, NUMBER, grammars, one, sentences
 

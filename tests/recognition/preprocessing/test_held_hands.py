@@ -7,7 +7,7 @@ import numpy as np
 from app.recognition.poses.hand_shape import HandShape
 from app.recognition.poses.sequence import PoseSequence
 from app.recognition.poses.trajectory import Trajectory
-from app.recognition.preprocessing.held_hands import find_held_hands, rests_between_ends
+from app.recognition.preprocessing.holds import find_held_hands, rests_between_ends
 from tests.recognition.held_takes import FIST, FLAT, hold
 
 

@@ -11,7 +11,7 @@ from app.recognition import Gesture, GestureError, Language, PoseSequence, Recog
 from app.recognition.gestures.switches import Switches
 from app.recognition.poses.landmarks import POSE_LANDMARKS
 from app.recognition.preprocessing.quality import QualityFault, find_fault
-from app.recognition.preprocessing.side_swaps import pair_sides
+from app.recognition.preprocessing.repair import pair_sides
 from tests.recognition.strategies import SHAPES, circle, recording, recordings
 
 WRIST = POSE_LANDMARKS.index("right_wrist")

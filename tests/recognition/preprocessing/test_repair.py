@@ -10,8 +10,7 @@ from hypothesis import strategies as st
 from app.recognition import Gesture, Language, PoseSequence, Recognizer
 from app.recognition.gestures.tuning import Tuning
 from app.recognition.poses.landmarks import POSE_LANDMARKS
-from app.recognition.preprocessing.repair import repair_poses
-from app.recognition.preprocessing.side_swaps import pair_sides, swap_sides
+from app.recognition.preprocessing.repair import pair_sides, repair_poses, swap_sides
 from tests.recognition.damaged_poses import with_sides_exchanged
 from tests.recognition.strategies import SHAPES, circle, in_space, recording, recordings
 

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from app.recognition.poses.landmarks import POSE_LANDMARKS, other_side
 from app.recognition.poses.sequence import FloatArray, PoseSequence
 from app.recognition.poses.trajectory import Trajectory
-from app.recognition.preprocessing.side_swaps import find_side_swaps, median, pair_sides
+from app.recognition.preprocessing.repair import find_side_swaps, median, pair_sides
 from tests.recognition.strategies import circle, recording
 
 

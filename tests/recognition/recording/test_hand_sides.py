@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from app.recognition.poses.frame import Hand, Side
-from app.recognition.recording.hand_sides import place_hands
+from app.recognition.recording.recording import place_hands
 from tests.recognition.parametric_hand import hand_xy, salute
 
 LEFT, RIGHT = (400.0, 200.0), (200.0, 200.0)

@@ -12,7 +12,7 @@ from app.recognition.estimation.person_tracker import REUNION_SECONDS
 from app.recognition.poses.frame import Body, FrameLandmarks, Hand
 from app.recognition.poses.landmarks import HAND_LANDMARKS, POSE_LANDMARKS
 from app.recognition.poses.sequence import FloatArray
-from app.recognition.recording.live_segmentation import LiveTakes
+from app.recognition.recording.live_segmentation import Followed, LiveTakes, PeopleInStream
 from app.recognition.recording.people import (
     Choice,
     People,
@@ -20,7 +20,6 @@ from app.recognition.recording.people import (
     prominence_over,
     see_people,
 )
-from app.recognition.recording.people_in_stream import Followed, PeopleInStream
 from app.recognition.recording.salute import LONGEST_TAKE, best_salute
 from tests.recognition.parametric_hand import hand_xy, salute
 

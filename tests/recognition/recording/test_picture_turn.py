@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from app.recognition.recording.picture_turn import find_turn
+from app.recognition.recording.extraction import find_turn
 from app.recognition.recording.recording import Recording
 
 

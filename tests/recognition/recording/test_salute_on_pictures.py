@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from app.recognition.estimation import create_estimator
 from app.recognition.estimation.estimator import PoseEstimator
+from app.recognition.estimation.factory import create_estimator
 from benchmarks.accuracy.salute import (
     Picture,
     Rates,

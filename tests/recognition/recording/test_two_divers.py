@@ -10,9 +10,10 @@ import numpy as np
 import pytest
 
 from app.recognition import Language, Recognizer
-from app.recognition.estimation import PoseEstimator, create_estimator
+from app.recognition.estimation.estimator import PoseEstimator
+from app.recognition.estimation.factory import create_estimator
 from app.recognition.recording.extraction import record_frames
-from app.recognition.recording.people_in_stream import PeopleInStream
+from app.recognition.recording.live_segmentation import PeopleInStream
 from app.recognition.recording.recording import Recording
 from app.recognition.recording.segmentation import takes_in
 from tests.recognition.two_divers import Beside, Placed

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from app.recognition import Language, Recognizer, Recording, takes_in
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.recording.clip_range import find_clip_range
-from app.recognition.recording.missing_salutes import explain_missing_salutes
+from app.recognition.recording.extraction import explain_missing_salutes
 from app.recognition.recording.salute import HOLD_SECONDS, SHORTEST_TAKE
 from app.recognition.recording.segmentation import TakeMachine, TakeState, list_unseen
 from app.recognition.recording.unseen import (

@@ -6,8 +6,7 @@ import pytest
 from app.recognition import Gesture
 from app.recognition.poses.hand_shape import HandShape
 from app.recognition.poses.sequence import FloatArray
-from app.recognition.simulation.hand_variation import HAND_SPREADS, vary_hands
-from app.recognition.simulation.variation import Person, draw_variants
+from app.recognition.simulation.variation import HAND_SPREADS, Person, draw_variants, vary_hands
 from app.recognition.voters.hand_voters import HandVoter
 from app.recognition.voters.registry import HAND_VOTERS
 from tests.recognition.held_takes import FLAT, TWO, hold

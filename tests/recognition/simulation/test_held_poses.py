@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from app.recognition.simulation.held_poses import HOLD, simulate_held_poses
+from app.recognition.simulation.background_motion import HOLD, simulate_held_poses
 from tests.posed import head_pose
 
 

@@ -6,7 +6,7 @@ from hypothesis import given
 
 from app.recognition.features.trajectory_image import Drawing
 from app.recognition.poses.sequence import FloatArray
-from app.recognition.voters.fourier import FourierDescriptors
+from app.recognition.voters.shape_voters import FourierDescriptors
 from tests.recognition.strategies import Shape, strokes
 from tests.recognition.voters.figures import CIRCLE, FIGURES, SIX, drawing_of, turned
 

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from app.recognition.poses.sequence import FloatArray
-from app.recognition.voters.hu import FLOOR, HuMoments
+from app.recognition.voters.shape_voters import FLOOR, HuMoments
 from tests.recognition.voters.figures import CIRCLE, FIGURES, drawing_of, turned
 
 BETWEEN_FIGURES = 1.0

@@ -11,8 +11,7 @@ from hypothesis import strategies as st
 from app.recognition.features.motion import build_movement
 from app.recognition.poses.sequence import FloatArray, PoseSequence
 from app.recognition.poses.trajectory import Trajectory
-from app.recognition.voters.motion_voters import MotionVoter, Path
-from app.recognition.voters.wrist_bend import WristBend
+from app.recognition.voters.motion_voters import MotionVoter, Path, WristBend
 from tests.recognition.strategies import recording, rest
 
 HANDS = ("left_wrist", "right_wrist")

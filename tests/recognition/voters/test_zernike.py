@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from app.recognition.features.trajectory_image import Drawing
 from app.recognition.poses.sequence import FloatArray
-from app.recognition.voters.zernike import DEGREE, ORDERS, ZernikeMoments, zernike_magnitudes
+from app.recognition.voters.shape_voters import DEGREE, ORDERS, ZernikeMoments, zernike_magnitudes
 from tests.recognition.strategies import Shape, strokes
 from tests.recognition.voters.figures import CIRCLE, FIGURES, SIX, drawing_of, turned
 

@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from app.recognition.models import ModelName, model_path
+from app.recognition.models.storage import ModelName, model_path
 from release.hand_finder.pictures import Hands, Picture
 from tests.recognition.estimation.drawn_hand import flat_hand
 

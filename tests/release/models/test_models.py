@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from app.recognition.errors import ModelError
-from app.recognition.models import installed_models
+from app.recognition.models.storage import installed_models
 from release.models.__main__ import obtain_models
 from tests.conftest import ROOT
 

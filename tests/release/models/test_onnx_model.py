@@ -9,7 +9,7 @@ import numpy as np
 import onnx
 import pytest
 
-from app.recognition.models import ModelName, TaskBundleName, model_path, task_bundle_path
+from app.recognition.models.storage import ModelName, TaskBundleName, model_path, task_bundle_path
 from app.recognition.recording.video import read_frames
 from release.models.onnx_model import to_onnx
 from release.models.schemas import Schemas

@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.recognition.models import TaskBundleName, task_bundle_path
+from app.recognition.models.storage import TaskBundleName, task_bundle_path
 from release.models.schemas import Schemas
 from release.models.sources import BUNDLE_PARTS
 from release.models.task_bundle import described, task_bundle

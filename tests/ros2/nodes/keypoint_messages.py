@@ -8,7 +8,7 @@ from osg_interfaces.msg import BodyKeypoints, Hands
 from std_msgs.msg import Header
 
 from app.recognition import Recording
-from app.recognition.estimation import Body
+from app.recognition.poses.frame import Body
 from osg_ros.topics.body_messages import to_body_message
 from osg_ros.topics.stamps import to_stamp
 

@@ -13,7 +13,7 @@ from keypoints_interfaces.msg import (
 )
 from std_msgs.msg import Header
 
-from app.recognition.estimation import Body, Hand
+from app.recognition.poses.frame import Body, Hand
 from app.recognition.poses.landmarks import HAND_LANDMARKS, POSE_LANDMARKS
 from app.recognition.poses.skeletons import SKELETON_2D
 from app.recognition.recording.salute import best_salute

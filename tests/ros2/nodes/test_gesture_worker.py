@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from sensor_msgs.msg import Image
 
-from app.recognition.estimation import FrameLandmarks
+from app.recognition.poses.frame import FrameLandmarks
 from app.recognition.poses.landmarks import POSE_LANDMARKS
 from app.robot import ActiveLanguage, Event, Frame, create_listener
 from osg_ros.nodes.gesture_worker import MOST_FAILURES, GestureWorker

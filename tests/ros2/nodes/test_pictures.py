@@ -8,7 +8,7 @@ import pytest
 from sensor_msgs.msg import CompressedImage, Image
 
 from app.recognition import OsgError
-from app.recognition.estimation import Image as RGBImage
+from app.recognition.poses.frame import Image as RGBImage
 from osg_ros.topics.image_messages import PictureDecoder, to_image_message
 
 

@@ -22,7 +22,7 @@ from std_msgs.msg import Bool, String
 from vision_msgs.msg import Classification
 
 from app.recognition import Gesture, Language, Recognizer, Recording, takes_in
-from app.recognition.estimation import Body
+from app.recognition.poses.frame import Body
 from osg_ros.nodes.managed_node import ManagedNode
 from osg_ros.nodes.recognition_node import RecognitionNode
 from osg_ros.topics.body_messages import to_published_keypoints

@@ -11,9 +11,8 @@ from app.api.http.schemas.gestures import GestureView
 from app.api.http.schemas.values import Author, Body, NewName, View
 from app.recognition.decision.outcome import MOST_REFUSED_AT_ALL
 from app.recognition.gestures.profile import ProfileName
-from app.recognition.language.file_schema import TuningEntry
+from app.recognition.language.file_schema import TriggerEntry, TuningEntry
 from app.recognition.language.grammar_entry import GrammarEntry
-from app.recognition.language.trigger_entry import TriggerEntry
 
 
 class LanguageDraft(Body):

@@ -22,7 +22,7 @@ from app.api.services.stored_recognitions import load_recognition
 from app.api.workers.tasks import Export
 from app.api.workers.worker_messages import Failed
 from app.bags.export_writer import NamedRecognition
-from app.recognition.language.trigger_entry import trigger_to_entry
+from app.recognition.language.file_schema import trigger_to_entry
 from app.recognition.triggers.trigger import SALUTE
 from app.store.models import new_id
 

@@ -17,7 +17,7 @@ from app.api.workers.pictures import thumbnails_in
 from app.recognition import PoseError, Recording
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.trajectory import Trajectory
-from app.recognition.recording.picture_turn import find_turn
+from app.recognition.recording.extraction import find_turn
 from app.recognition.recording.segmentation import list_unseen
 from app.recognition.recording.video import Turn
 

@@ -11,8 +11,7 @@ from app.api.services.running_studio import computed_briefly
 from app.recognition.features.trajectory_image import SIMPLIFICATION
 from app.recognition.gestures.profile import DEFAULT_PROFILE, PROFILES, ProfileName
 from app.recognition.gestures.tuning import MAX_SIMPLIFICATION
-from app.recognition.language.file_schema import TuningEntry
-from app.recognition.language.tuning_entry import tuning_to_entry
+from app.recognition.language.file_schema import TuningEntry, tuning_to_entry
 
 router = APIRouter(prefix="/languages", tags=["languages"])
 

@@ -30,8 +30,8 @@ from app.api.services.language_responses import (
 )
 from app.api.services.running_studio import CurrentStudio, Studio, edited
 from app.recognition import Language
+from app.recognition.language.file_schema import entry_to_tuning
 from app.recognition.language.grammar_entry import entry_to_grammar
-from app.recognition.language.tuning_entry import entry_to_tuning
 from app.recognition.text.look_alikes import are_confusable
 from app.store import LanguageStore
 

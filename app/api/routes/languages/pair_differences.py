@@ -13,8 +13,7 @@ from app.api.http.schemas.values import Label, View
 from app.api.routes.asked_revisions import CurrentRevision
 from app.api.services.gesture_edits import gesture_in
 from app.api.services.running_studio import computed
-from app.recognition.explanation.alignment import Alignment
-from app.recognition.explanation.pair_difference import PairDifference, compare_pair
+from app.recognition.explanation.alignment import Alignment, PairDifference, compare_pair
 from app.recognition.gestures.gesture import Gesture
 
 DIGITS = 3

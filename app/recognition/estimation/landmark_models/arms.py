@@ -8,8 +8,7 @@ from typing import Final
 
 import numpy as np
 
-from app.recognition.estimation.landmark_models.hand_regions import palm_size, up_of
-from app.recognition.estimation.landmark_models.region import Region, upright
+from app.recognition.estimation.landmark_models.region import Region, palm_size, up_of, upright
 from app.recognition.poses.frame import SIDES, Body, Hand, Side
 from app.recognition.poses.landmarks import POSE_LANDMARKS
 from app.recognition.poses.sequence import FloatArray

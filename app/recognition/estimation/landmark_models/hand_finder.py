@@ -15,8 +15,13 @@ import numpy as np
 
 from app.recognition.estimation.landmark_models.arms import measure_body
 from app.recognition.estimation.landmark_models.detector import Detector
-from app.recognition.estimation.landmark_models.hand_regions import KNUCKLES, WRIST, up_of
-from app.recognition.estimation.landmark_models.region import Region, upright
+from app.recognition.estimation.landmark_models.region import (
+    KNUCKLES,
+    WRIST,
+    Region,
+    up_of,
+    upright,
+)
 from app.recognition.estimation.landmark_models.suppression import Detection
 from app.recognition.poses.frame import Body, Hand, Image
 from app.recognition.poses.landmarks import HAND_LANDMARKS, POSE_LANDMARKS

@@ -10,13 +10,14 @@ from typing_extensions import Self
 
 from app.recognition.estimation.landmark_models.arms import ArmPace
 from app.recognition.estimation.landmark_models.hand_finder import HandPlace
-from app.recognition.estimation.landmark_models.hand_regions import (
+from app.recognition.estimation.landmark_models.onnx_session import ModelSession, Signature
+from app.recognition.estimation.landmark_models.region import (
+    REPLICATED_BORDER,
+    Region,
     box_of,
     palm_size,
     region_of_hand,
 )
-from app.recognition.estimation.landmark_models.onnx_session import ModelSession, Signature
-from app.recognition.estimation.landmark_models.region import REPLICATED_BORDER, Region
 from app.recognition.estimation.landmark_models.suppression import measure_overlaps
 from app.recognition.poses.frame import Hand, Image, Side
 from app.recognition.poses.landmarks import HAND_LANDMARKS

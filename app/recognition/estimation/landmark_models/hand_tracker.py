@@ -34,8 +34,7 @@ from app.recognition.estimation.landmark_models.hand_model import (
     SeenHand,
     find_duplicates,
 )
-from app.recognition.estimation.landmark_models.hand_regions import region_of_palm
-from app.recognition.estimation.landmark_models.region import Region
+from app.recognition.estimation.landmark_models.region import Region, region_of_palm
 from app.recognition.poses.frame import SIDES, Body, FrameLandmarks, Image, Side
 from app.recognition.poses.landmarks import POSE_LANDMARKS
 

@@ -11,14 +11,10 @@ from typing import Any
 
 from std_msgs.msg import Header
 
-from app.recognition.estimation import (
-    FrameLandmarks,
-    PoseEstimator,
-    create_estimator,
-    finds_hands,
-    list_landmarks,
-)
+from app.recognition.estimation.estimator import PoseEstimator
+from app.recognition.estimation.factory import create_estimator, finds_hands, list_landmarks
 from app.recognition.language.requirements import require_landmarks, require_trigger
+from app.recognition.poses.frame import FrameLandmarks
 from app.robot import ActiveLanguage, Event, Frame, PhraseListener, create_listener
 from osg_ros.estimation_settings import ESTIMATOR, HANDS, PROVIDER, THREADS, WATER
 from osg_ros.language_service import LANGUAGE, PROFILE, WITHOUT_SALUTES, LanguageService

@@ -11,8 +11,9 @@ from contextlib import closing
 from typing import Protocol
 
 from app.recognition.errors import OsgError
-from app.recognition.estimation import FrameLandmarks, PoseEstimator
+from app.recognition.estimation.estimator import PoseEstimator
 from app.recognition.estimation.water import WaterCorrection
+from app.recognition.poses.frame import FrameLandmarks
 from app.robot import ActiveLanguage, Event, Frame, PhraseListener, Runtime
 from osg_ros.topics.topic_source import TopicSource
 

@@ -7,9 +7,9 @@ from typing import Any
 from osg_interfaces.msg import BodyKeypoints
 
 from app.recognition.errors import OsgError
-from app.recognition.estimation.composed_estimator import ComposedEstimator, TrackedHands
+from app.recognition.estimation.factory import ComposedEstimator, TrackedHands
 from app.recognition.estimation.onnx_estimator import hand_tracker
-from app.recognition.estimation.water_sight import WaterSight
+from app.recognition.estimation.water import WaterSight
 from app.recognition.poses.frame import Body, FrameLandmarks, Image
 from app.recognition.poses.landmarks import POSE_LANDMARKS
 from osg_ros.estimation_settings import PROVIDER, THREADS, WATER

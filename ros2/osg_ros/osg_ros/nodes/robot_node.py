@@ -13,7 +13,7 @@ from rclpy.signals import SignalHandlerOptions
 from std_msgs.msg import Header
 
 from app.recognition.errors import OsgError
-from app.recognition.estimation import FrameLandmarks
+from app.recognition.poses.frame import FrameLandmarks
 from app.robot import ActiveLanguage, AnswerGiven, Event, Frame, SourceOpened
 from osg_ros.commands.answers import PULSE_SECONDS
 from osg_ros.nodes.managed_node import RESULTS, ManagedNode

@@ -10,7 +10,7 @@ from osg_interfaces.msg import BodyKeypoints, GestureRecognition, Hands, Keypoin
 from sensor_msgs.msg import Image
 
 from app.recognition.errors import OsgError
-from app.recognition.estimation import Image as RGBImage
+from app.recognition.poses.frame import Image as RGBImage
 from app.recognition.poses.landmarks import SKELETON
 from osg_ros.nodes.managed_node import LATCHED, RESULTS, SENSOR_DATA, ManagedNode
 from osg_ros.nodes.process import spin

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from std_msgs.msg import Header
 
-from app.recognition.estimation import FrameLandmarks
+from app.recognition.poses.frame import FrameLandmarks
 from app.recognition.text.wording import ask_twins
 from app.robot import (
     ActiveLanguage,

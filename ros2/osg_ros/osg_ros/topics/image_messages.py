@@ -9,7 +9,7 @@ from sensor_msgs.msg import CompressedImage, Image
 
 from app.bags.image_messages import PacketDecoder, raw_image
 from app.recognition.errors import VideoError
-from app.recognition.estimation import Image as RGBImage
+from app.recognition.poses.frame import Image as RGBImage
 from app.recognition.recording.video_limits import VideoLimits
 from osg_ros.parameters import Setting
 

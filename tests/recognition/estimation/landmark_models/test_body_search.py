@@ -7,16 +7,18 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from app.recognition.estimation import Image, OnnxPoseEstimator
 from app.recognition.estimation.landmark_models.body_model import (
     MARGIN,
     POSE_SIGNATURE,
+    TORSO,
     BodyModel,
+    BodySearch,
 )
-from app.recognition.estimation.landmark_models.body_search import TORSO, BodySearch
 from app.recognition.estimation.landmark_models.detector import PERSON_LAYOUT, Detector
 from app.recognition.estimation.landmark_models.onnx_session import ModelSession
-from app.recognition.models import model_path
+from app.recognition.estimation.onnx_estimator import OnnxPoseEstimator
+from app.recognition.models.storage import model_path
+from app.recognition.poses.frame import Image
 from app.recognition.poses.landmarks import POSE_LANDMARKS
 from benchmarks.accuracy.underwater import degrade
 from tests.recognition.estimation.clip_frames import clip_frames

@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from app.recognition.errors import EstimatorError, ModelError
-from app.recognition.estimation import create_estimator
+from app.recognition.estimation.factory import create_estimator
 from app.recognition.estimation.landmark_models.diver_hands import DiverHands, find_peaks
 from app.recognition.poses.frame import Body, Hand, Image
 from app.recognition.poses.landmarks import POSE_LANDMARKS

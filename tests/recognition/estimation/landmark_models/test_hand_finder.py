@@ -21,8 +21,8 @@ from app.recognition.estimation.landmark_models.hand_finder import (
 from app.recognition.estimation.landmark_models.onnx_session import ModelSession
 from app.recognition.estimation.landmark_models.region import Region
 from app.recognition.estimation.onnx_estimator import OnnxPoseEstimator
-from app.recognition.estimation.water_sight import WaterSight
-from app.recognition.models import finder_path
+from app.recognition.estimation.water import WaterSight
+from app.recognition.models.storage import finder_path
 from app.recognition.poses.frame import Body, Hand, Image
 from app.recognition.poses.landmarks import POSE_LANDMARKS
 

@@ -8,7 +8,7 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.recognition.estimation.landmark_models.hand_regions import (
+from app.recognition.estimation.landmark_models.region import (
     PALM_TURN,
     region_of_hand,
     region_of_palm,

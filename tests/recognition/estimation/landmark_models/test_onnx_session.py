@@ -9,7 +9,6 @@ import onnxruntime  # type: ignore[import-untyped]
 import pytest
 
 from app.recognition.errors import EstimatorError, ModelError
-from app.recognition.estimation import available_providers
 from app.recognition.estimation.landmark_models.body_model import POSE_SIGNATURE
 from app.recognition.estimation.landmark_models.detector import PALM_LAYOUT, PERSON_LAYOUT
 from app.recognition.estimation.landmark_models.hand_model import HAND_SIGNATURE
@@ -17,9 +16,10 @@ from app.recognition.estimation.landmark_models.onnx_session import (
     ModelSession,
     Provider,
     Signature,
+    available_providers,
     check_provider,
 )
-from app.recognition.models import ModelName, model_path
+from app.recognition.models.storage import ModelName, model_path
 
 SIGNATURES: dict[ModelName, Signature] = {
     "pose_detection": PERSON_LAYOUT.signature,

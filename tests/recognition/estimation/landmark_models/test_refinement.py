@@ -7,8 +7,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from app.recognition.estimation.landmark_models.detector import REACH, refine, sigmoid
 from app.recognition.estimation.landmark_models.onnx_session import Tensor
-from app.recognition.estimation.landmark_models.refinement import REACH, refine, sigmoid
 
 NOTHING = -30.0
 CERTAIN = 30.0

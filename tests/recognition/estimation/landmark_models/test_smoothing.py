@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.recognition.estimation.landmark_models.smoothing import ExponentialFilter, OneEuroFilter
+from app.recognition.estimation.landmark_models.body import ExponentialFilter, OneEuroFilter
 from app.recognition.poses.sequence import FloatArray
 
 VALUES = st.floats(-1000, 1000)
