@@ -237,12 +237,7 @@ def find_counterfactuals(
                 first = best.get(change.kind, found)
                 best[change.kind] = min(first, found, key=lambda each: each.rank)
                 break
-    is_far = _is_far_off(context, expected)
-    kept = [
-        each
-        for each in best.values()
-        if (each.effect is None or not each.effect.lost) and not (is_far and each.repairs_no_other)
-    ]
+    kept = [each for each in best.values() if each.effect is None or not each.effect.lost]
     ranked = sorted(kept, key=lambda each: each.rank)
     # A take that becomes a demonstration is right by itself: alone that is no remedy.
     if context.known and ranked and ranked[0].repairs_no_other:
@@ -360,7 +355,8 @@ def _gestures(context: RecognitionContext, expected: str) -> Iterator[list[Inter
         if gesture.trajectory is not None and isinstance(context.recognizer.vote, FusedVote):
             yield from _switches(context, label, expected=label == expected)
     shown = context.language.gesture(expected).single_demonstrations()
-    if context.closed and len(shown) < MAX_DEMONSTRATIONS:
+    is_typical = context.closed and not _is_far_off(context, expected)
+    if is_typical and len(shown) < MAX_DEMONSTRATIONS:
         values = {"label": expected}
         yield [Intervention("further_demonstration", 1 / (len(shown) + 1), values)]
 

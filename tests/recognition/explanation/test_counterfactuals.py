@@ -188,19 +188,21 @@ def test_this_take_as_demonstration_is_offered_where_it_repairs_other_takes() ->
         for label in ("circle", "line")
         for seed in range(2)
     )
-    misread = KnownTake("line", shapes.query(recording(SHAPES["square"], jitter=0.01)))
-    made = RecognitionContext(recognizer=shapes, poses=query, whole=query, known=(*read, misread))
-    *_, last = find_counterfactuals(made, "line")[0]
+    square = shapes.query(recording(SHAPES["square"], jitter=0.01))
+    made = RecognitionContext(recognizer=shapes, poses=query, whole=query)
+    misread = replace(made, known=(*read, KnownTake("infinity", square)))
+    *_, last = find_counterfactuals(misread, "infinity")[0]
     assert last.change.kind == "further_demonstration"
     assert last.effect is not None
     assert (last.effect.takes, last.effect.repaired, last.effect.broken) == (5, 1, 0)
     # It is right by itself: that repairs nothing.
-    assert find_counterfactuals(replace(made, known=read), "line")[0] == ()
-    # Farther off than any take that is accepted, it is none unless others agree.
-    assert made.result.novelty[made.language.labels.index("line")] > 1
-    assert find_counterfactuals(replace(made, known=()), "line")[0] == ()
+    assert find_counterfactuals(replace(made, known=read), "infinity")[0] == ()
     # Without an end it may be no gesture at all.
-    assert find_counterfactuals(replace(made, closed=False), "line")[0] == ()
+    assert find_counterfactuals(replace(misread, closed=False), "infinity")[0] == ()
+    # Farther off than any take that is accepted, it is none, whatever it would repair.
+    assert made.result.novelty[made.language.labels.index("line")] > 1
+    far_off = replace(made, known=(*read, KnownTake("line", square)))
+    assert find_counterfactuals(far_off, "line")[0] == ()
 
 
 def test_a_bad_demonstration_is_cut_first() -> None:
