@@ -15,8 +15,8 @@ from app.recognition.decision.outcome import NOVELTIES
 from app.recognition.decision.result import Recognition, ScoreTable
 from app.recognition.features.trajectory_image import SIMPLIFICATION, draw
 from app.recognition.gestures.gesture import Gesture
+from app.recognition.gestures.profile import AS_THE_PROFILE, Tuning
 from app.recognition.gestures.switches import Sensitivity
-from app.recognition.gestures.tuning import AS_THE_PROFILE, Tuning
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.trajectory import Trajectory
 from app.recognition.voters.registry import PAPER_VOTERS

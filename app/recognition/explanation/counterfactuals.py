@@ -15,20 +15,19 @@ from typing import Annotated, Any, Final, Literal, get_args
 import numpy as np
 from pydantic import InstanceOf, PlainSerializer
 
-from app.recognition.decision.distinctions import CLEARLY_SLOWER
 from app.recognition.decision.fused_vote import FusedVote
+from app.recognition.decision.fusion import CLEARLY_SLOWER
 from app.recognition.decision.result import Distance
 from app.recognition.errors import OsgError
 from app.recognition.explanation.blame import Blame
 from app.recognition.explanation.context import KnownTake, KnownTakes, RecognitionContext
-from app.recognition.explanation.cuts import find_cuts
 from app.recognition.explanation.strokes import transcribe_gesture
 from app.recognition.explanation.undoing import compare_with, find_better_range
 from app.recognition.features.motion import parse_body_part
 from app.recognition.gestures.demonstration import MAX_DEMONSTRATIONS
 from app.recognition.gestures.gesture import Gesture
+from app.recognition.gestures.profile import describe_repair
 from app.recognition.gestures.switches import Switch
-from app.recognition.gestures.tuning import describe_repair
 from app.recognition.text.wording import humanize
 
 TRIM_STEP = 0.1
@@ -335,7 +334,7 @@ def _trims(context: RecognitionContext) -> Iterator[list[Intervention]]:
     )
     steps = np.arange(1, TRIM_STEPS + 1) * TRIM_STEP * (end - start)
     ways = ((1, 0), (0, -1), (1, -1), (-1, 0), (0, 1))
-    cuts = [(each.poses.time[0], each.poses.time[-1]) for each in find_cuts(context)]
+    cuts = [(each.poses.time[0], each.poses.time[-1]) for each in context.cuts]
     for spans in (
         cuts,
         *([(start + a * by, end + b * by) for by in steps] for a, b in ways),

@@ -10,8 +10,13 @@ import numpy as np
 
 from app.recognition.errors import GestureError, PoseError
 from app.recognition.features.contour import BinaryImage
-from app.recognition.features.hand_image import draw_hands
-from app.recognition.features.trajectory_image import SIMPLIFICATION, SIZE, Drawing, draw
+from app.recognition.features.trajectory_image import (
+    SIMPLIFICATION,
+    SIZE,
+    Drawing,
+    draw,
+    draw_hands,
+)
 from app.recognition.poses.landmarks import POSE_LANDMARKS, UPPER_BODY, other_side
 from app.recognition.poses.sequence import FloatArray, PoseSequence
 from app.recognition.poses.trajectory import Trajectory

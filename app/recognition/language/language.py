@@ -12,8 +12,13 @@ from typing import Any
 from app.recognition.decision.outcome import MOST_REFUSED, MOST_REFUSED_AT_ALL
 from app.recognition.errors import LanguageError, point_to
 from app.recognition.gestures.gesture import SETTINGS, Gesture, make_label
-from app.recognition.gestures.profile import DEFAULT_PROFILE, ProfileName, find_profile
-from app.recognition.gestures.tuning import AS_THE_PROFILE, Tuning
+from app.recognition.gestures.profile import (
+    AS_THE_PROFILE,
+    DEFAULT_PROFILE,
+    ProfileName,
+    Tuning,
+    find_profile,
+)
 from app.recognition.language.file import name_file, read_content, read_document, write_document
 from app.recognition.language.file_schema import (
     FORMAT,

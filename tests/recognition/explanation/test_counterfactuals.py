@@ -17,8 +17,7 @@ from app.recognition.explanation.counterfactuals import (
 from app.recognition.explanation.demonstration_faults import DemonstrationFault, FaultKind
 from app.recognition.explanation.explanation import explain
 from app.recognition.gestures.demonstration import MAX_DEMONSTRATIONS
-from app.recognition.gestures.profile import PROFILES
-from app.recognition.gestures.tuning import Tuning
+from app.recognition.gestures.profile import PROFILES, Tuning
 from app.recognition.poses.landmarks import other_side
 from tests.recognition.damaged_poses import with_sides_exchanged
 from tests.recognition.demonstrations import drawn_language, drawn_recognizer
