@@ -52,14 +52,12 @@ class MajorityVote:
         self._count, self._drawings = len(every), _group_drawings(every)
 
     @property
-    def landmarks(self) -> tuple[str, ...]:
-        """The salient landmarks of all gestures, in alphabetical order."""
-        return self.needed
-
-    @property
     def needed(self) -> tuple[str, ...]:
-        """The same landmarks: a query must move one of them."""
+        """The salient landmarks of all gestures, of which a query must move one, in order."""
         return tuple(sorted({name for salient in self._drawings for name in salient}))
+
+    landmarks = needed
+    """The same: these are followed in a query."""
 
     @property
     def weights(self) -> Mapping[str, float]:

@@ -247,11 +247,6 @@ class RecognitionContext:
         return Recognizer(self.language, "full")
 
     @property
-    def trajectory(self) -> Trajectory:
-        """The trajectory that the voters compare."""
-        return self.trace.query
-
-    @property
     def score_table(self) -> ScoreTable:
         """The stroke's distances to every gesture."""
         return self.trace.score_table

@@ -17,6 +17,7 @@ from pydantic import InstanceOf, PlainSerializer
 
 from app.recognition.decision.fused_vote import FusedVote
 from app.recognition.decision.fusion import CLEARLY_SLOWER
+from app.recognition.decision.outcome import is_rejected
 from app.recognition.decision.result import Distance
 from app.recognition.errors import OsgError
 from app.recognition.explanation.blame import Blame
@@ -188,16 +189,6 @@ class Counterfactual:
         return last, -gained, ORDER.index(kind), self.change.size, -self.margin
 
 
-def measure_margin(scores: Sequence[float], expected: int) -> float:
-    """Return the least other score minus the expected gesture's: positive when it is nearest.
-
-    Infinite where nothing else can be compared, minus infinite where the expected cannot.
-    """
-    if not np.isfinite(scores[expected]):
-        return -np.inf
-    return float(np.delete(scores, expected).min(initial=np.inf) - scores[expected])
-
-
 def find_counterfactuals(
     context: RecognitionContext, expected: str, blame: Sequence[Blame] = (), *, faulty: bool = False
 ) -> tuple[tuple[Counterfactual, ...], int]:
@@ -236,7 +227,9 @@ def find_counterfactuals(
                 first = best.get(change.kind, found)
                 best[change.kind] = min(first, found, key=lambda each: each.rank)
                 break
-    is_far = _is_far_off(context, expected)
+    # A take that is too far from a gesture to be accepted as one.
+    novelty = context.result.novelty
+    is_far = novelty.size and is_rejected(novelty[context.language.labels.index(expected)])
     kept = [
         each
         for each in best.values()
@@ -247,12 +240,6 @@ def find_counterfactuals(
     if context.known and ranked and ranked[0].repairs_no_other:
         ranked = []
     return tuple(ranked), tried
-
-
-def _is_far_off(context: RecognitionContext, expected: str) -> bool:
-    """Return whether a take is too far from a gesture to be accepted as one."""
-    novelty = context.result.novelty
-    return bool(novelty.size and novelty[context.language.labels.index(expected)] > 1)
 
 
 def _verify(
@@ -277,12 +264,11 @@ def _verify(
             repaired=len(repaired),
             broken=len(broken),
         )
-    at = after.result.gestures.index(expected)
     return Counterfactual(
         change=change,
         label=expected,
         confidence=after.result.confidence,
-        margin=measure_margin(after.score_table.scores.tolist(), at),
+        margin=after.result.margin,
         effect=effect,
     )
 
@@ -316,7 +302,9 @@ def _cuts(
     """Cut the demonstrations that are at fault, for the known takes and for this one."""
     cuts = [(each.demonstration, each.start, each.end) for each in blame]
     table, at = context.score_table, context.language.labels.index(expected)
-    comparison = compare_with(context.recognizer, context.trajectory, table, at) if faulty else None
+    comparison = (
+        compare_with(context.recognizer, context.trace.query, table, at) if faulty else None
+    )
     if comparison and (better := find_better_range([comparison])):
         cuts.append((table.nearest_demonstration(at), *better))
     for number, start, end in cuts:

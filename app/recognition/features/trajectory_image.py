@@ -18,7 +18,7 @@ import numpy as np
 import numpy.typing as npt
 
 from app.recognition.features.contour import BinaryImage, Contour
-from app.recognition.poses.hand_shape import HandShape
+from app.recognition.poses.frame import HandShape
 from app.recognition.poses.landmarks import FINGERS, HAND_LANDMARKS
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.trajectory import Trajectory

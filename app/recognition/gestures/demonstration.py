@@ -37,8 +37,7 @@ from app.recognition.preprocessing.salience import (
     find_salient_landmarks,
     measure_displacements,
 )
-from app.recognition.text.joiners import is_printable
-from app.recognition.text.look_alikes import compose
+from app.recognition.text.look_alikes import compose, is_printable
 from app.recognition.voters.registry import PAPER_VOTERS
 from app.recognition.voters.shape_voters import describe_drawing
 

@@ -35,8 +35,13 @@ from app.recognition.language.grammar_entry import entry_to_grammar, grammar_to_
 from app.recognition.phrases.grammar import Grammar
 from app.recognition.poses.landmarks import SKELETON
 from app.recognition.text.atomic_files import write_atomically
-from app.recognition.text.joiners import is_printable, without_joiners
-from app.recognition.text.look_alikes import compose, find_confusable, list_look_alikes
+from app.recognition.text.look_alikes import (
+    compose,
+    find_confusable,
+    is_printable,
+    list_look_alikes,
+    without_joiners,
+)
 from app.recognition.text.strict_json import build_pointer
 from app.recognition.text.wording import join_words
 from app.recognition.triggers.trigger import SALUTE, Trigger

@@ -11,7 +11,7 @@ from typing import Any, Literal, TypeVar
 import numpy as np
 
 from app.recognition.errors import PoseError
-from app.recognition.poses.hand_shape import HandShape, mirror_hands
+from app.recognition.poses.frame import HandShape, mirror_hands
 from app.recognition.poses.landmarks import HIPS, SHOULDERS, TORSO, other_side
 from app.recognition.poses.sequence import (
     MAX_GAP_SECONDS,

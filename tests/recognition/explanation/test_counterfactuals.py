@@ -12,7 +12,6 @@ from app.recognition.explanation.counterfactuals import (
     Intervention,
     find_counterfactuals,
     list_interventions,
-    measure_margin,
 )
 from app.recognition.explanation.demonstration_faults import DemonstrationFault, FaultKind
 from app.recognition.explanation.explanation import explain
@@ -306,19 +305,6 @@ def test_a_gesture_with_as_many_demonstrations_as_it_may_have_gets_no_other() ->
     kinds = {each.kind for series in list_interventions(made, "circle") for each in series}
     assert "trim" in kinds
     assert "further_demonstration" not in kinds
-
-
-@pytest.mark.parametrize(
-    ("scores", "expected"),
-    [
-        ([0.2, 0.5, 0.9], 0.3),
-        ([0.6, 0.5, 0.9], -0.1),
-        ([0.2], float("inf")),
-        ([float("inf"), 0.5], -float("inf")),
-    ],
-)
-def test_the_margin_is_to_the_nearest_other(scores: list[float], expected: float) -> None:
-    assert measure_margin(scores, 0) == pytest.approx(expected)
 
 
 @pytest.mark.parametrize(("hand", "offered"), [("right_wrist", False), ("left_wrist", True)])
