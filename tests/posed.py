@@ -11,8 +11,7 @@ from functools import cache
 from pathlib import Path
 
 from app.recognition import Gesture, Language, Recording, takes_in
-from app.recognition.triggers.arm_pose import ArmPose
-from app.recognition.triggers.trigger import Trigger
+from app.recognition.triggers.trigger import ArmPose, Trigger
 
 POSED_CLIPS = Path(__file__).parent / "posed_clips"
 

@@ -14,9 +14,9 @@ from app.cli.terminal import progress_bar
 from app.recognition import Language
 from app.recognition.health.check import check_health
 from app.recognition.health.choice import describe_people, measure_confusions
+from app.recognition.health.finding import Verdict
 from app.recognition.health.forecast import Outcome
 from app.recognition.health.report import GestureHealth, HealthReport, LimitHealth
-from app.recognition.health.verdict import Verdict
 from app.resources import known_signs_file
 
 HAS_ERRORS = 1

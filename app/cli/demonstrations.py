@@ -24,7 +24,7 @@ from app.recognition import Gesture, GestureError, Language, Recording, Take
 from app.recognition.explanation.demonstration_faults import find_demonstration_faults
 from app.recognition.gestures.demonstration import MAX_DEMONSTRATIONS
 from app.recognition.language.language import require_distinct_labels
-from app.recognition.poses.hand_shape import HandShape
+from app.recognition.poses.frame import HandShape
 from app.recognition.text.look_alikes import compose
 from app.recognition.triggers.trigger import SALUTE
 

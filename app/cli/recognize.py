@@ -27,8 +27,7 @@ from app.recognition.recording.extraction import explain_missing_salutes
 from app.recognition.recording.unseen import tell_clock
 from app.recognition.spotting import Spotter
 from app.recognition.text.wording import ask_twins
-from app.recognition.triggers.arm_pose import HOLD_SECONDS
-from app.recognition.triggers.trigger import SALUTE
+from app.recognition.triggers.trigger import HOLD_SECONDS, SALUTE
 
 NOTHING_RECOGNISED = 1
 """Exit code when no gesture was recognised."""

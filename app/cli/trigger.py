@@ -18,8 +18,7 @@ from app.cli.clip_argument import (
 from app.cli.terminal import tell
 from app.recognition import Language
 from app.recognition.errors import OsgError, TriggerError
-from app.recognition.triggers.arm_pose import ArmPose
-from app.recognition.triggers.trigger import NO_TRIGGER, SALUTE, Trigger
+from app.recognition.triggers.trigger import NO_TRIGGER, SALUTE, ArmPose, Trigger
 
 
 @reads_clips

@@ -10,7 +10,7 @@ from app import __version__
 from app.recognition.recording.chapters import chapters_in
 from app.recognition.recording.recording import FILE_VERSION
 from app.recognition.recording.video import Turn
-from app.recognition.text.hashing import hash_file
+from app.recognition.text.atomic_files import hash_file
 
 RECORDING_ENDING = ".npz"
 """Ending of the files that `Recording.save` writes."""

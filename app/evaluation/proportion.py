@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from app.recognition.health.verdict import Rate
+from app.recognition.health.finding import Rate
 
 
 @dataclass(frozen=True)

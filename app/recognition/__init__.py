@@ -19,7 +19,7 @@ from app.recognition.estimation.factory import create_estimator
 from app.recognition.explanation.context import RecognitionContext
 from app.recognition.explanation.explanation import explain
 from app.recognition.gestures.gesture import Gesture
-from app.recognition.gestures.tuning import Tuning
+from app.recognition.gestures.profile import Tuning
 from app.recognition.health.ambiguity import find_ambiguities
 from app.recognition.health.check import check_health
 from app.recognition.language.language import Language

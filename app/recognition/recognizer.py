@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping, Sequence, Set
+from collections.abc import Collection, Sequence, Set
 from dataclasses import replace
-from typing import Protocol
 
 import numpy as np
 
@@ -13,9 +12,8 @@ from app.recognition.decision.majority_vote import MajorityVote
 from app.recognition.decision.result import Recognition, ScoreTable, Trace
 from app.recognition.errors import LanguageError, PoseError
 from app.recognition.gestures.demonstration import condense
-from app.recognition.gestures.profile import find_profile
+from app.recognition.gestures.profile import Tuning, find_profile
 from app.recognition.gestures.switches import Sensitivity
-from app.recognition.gestures.tuning import Tuning
 from app.recognition.language.language import Language
 from app.recognition.poses.landmarks import other_side
 from app.recognition.poses.sequence import PoseSequence
@@ -34,41 +32,8 @@ from app.recognition.preprocessing.repair import Repair, repair_poses
 from app.recognition.recording.segmentation import Take
 from app.recognition.recording.trimming import Span
 from app.recognition.recording.unseen import describe_unseen, find_pauses
-from app.recognition.triggers.arm_pose import mostly_hang
+from app.recognition.triggers.trigger import mostly_hang
 from app.recognition.voters.registry import HAND_VOTER_NAMES
-
-
-class Vote(Protocol):
-    """Compares a query with every gesture of a language, and decides for one or none."""
-
-    @property
-    def landmarks(self) -> tuple[str, ...]:
-        """The salient landmarks of all gestures, in alphabetical order."""
-
-    @property
-    def needed(self) -> tuple[str, ...]:
-        """The salient landmarks of which a query must move at least one."""
-
-    @property
-    def weights(self) -> Mapping[str, float]:
-        """Each voter's weight in the decision, summing to 1."""
-
-    @property
-    def shape_twins(self) -> frozenset[tuple[int, int]]:
-        """Pairs of gestures, the first index the smaller, that the hand shape alone tells apart."""
-
-    @property
-    def undecided_twins(self) -> frozenset[tuple[int, int]]:
-        """Pairs that it would tell apart, if the author said that their hands are meant."""
-
-    def compare(self, trajectory: Trajectory) -> ScoreTable:
-        """Compare a condensed query with every gesture, voter by voter."""
-
-    def decide(self, compared: ScoreTable) -> Recognition:
-        """Decide for one gesture or none; one of the scores must be finite."""
-
-    def sensitivity(self, gesture: int) -> Sensitivity | None:
-        """Return which properties of a gesture count; None for a gesture without movement."""
 
 
 class Recognizer:
@@ -106,7 +71,7 @@ class Recognizer:
         self.language = language
         self.profile: str = traits.name
         self.tuning = tuning
-        self.vote: Vote = (
+        self.vote: FusedVote | MajorityVote = (
             FusedVote(language.gestures, tuning, language.most_refused)
             if traits.rejects
             else MajorityVote(language.gestures, tuning)

@@ -15,8 +15,7 @@ import viser
 
 from app.recognition import Language, PoseSequence, Recognition, Recording
 from app.recognition.errors import PoseError
-from app.recognition.features.hand_image import draw_hands
-from app.recognition.features.trajectory_image import draw
+from app.recognition.features.trajectory_image import draw, draw_hands
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.trajectory import Trajectory
 from app.recognition.preprocessing.holds import find_holds, keep_holds

@@ -14,7 +14,7 @@ import numpy as np
 from app.recognition import PoseError
 from app.recognition.decision.fused_vote import FusedVote
 from app.recognition.gestures.demonstration import condense
-from app.recognition.gestures.tuning import Tuning
+from app.recognition.gestures.profile import Tuning
 from app.recognition.preprocessing.repair import repair_poses
 from app.recognition.voters.registry import VOTER_NAMES
 from benchmarks.accuracy.shared_sets import demonstrated

@@ -28,7 +28,7 @@ import numpy.typing as npt
 
 from app.evaluation.proportion import Share
 from app.recognition import Gesture, Language, PoseError, Recognizer
-from app.recognition.decision import distinctions
+from app.recognition.decision import fusion
 from app.recognition.decision.fused_vote import FusedVote
 from app.recognition.decision.outcome import LIMIT_OF_ARMS, LIMIT_OF_HANDS, SCORE_FLOOR
 from app.recognition.features import motion, traversals
@@ -57,7 +57,7 @@ TRIED: Final[Sequence[tuple[Any, str, tuple[float, ...]]]] = (
     (motion, "RESTING_SHARE", (0.0, 0.02, 0.04, 0.07)),
     (traversals, "BACKWARD_PENALTY", (1.2, 1.4, 1.7, 2.0, 2.5)),
     (traversals, "EXCHANGED_PENALTY", (1.4, 1.5, 2.0, 3.0)),
-    (distinctions, "SAME_FIGURE", (0.25, 0.4, 0.5)),
+    (fusion, "SAME_FIGURE", (0.25, 0.4, 0.5)),
 )
 """Owner, name and tried values of the constants of the nearest gesture."""
 

@@ -28,7 +28,7 @@ from app.recognition import (
     record,
     takes_in,
 )
-from app.recognition.gestures.tuning import Tuning
+from app.recognition.gestures.profile import Tuning
 from app.recognition.preprocessing.repair import swap_sides
 from benchmarks.accuracy.shared_sets import demonstrated
 from benchmarks.sets.one_shot_draws import draws

@@ -44,7 +44,7 @@ import cv2
 import numpy as np
 
 from app.evaluation.proportion import Share
-from app.recognition.estimation import onnx_estimator
+from app.recognition.estimation import factory
 from app.recognition.estimation.factory import create_estimator
 from app.recognition.estimation.landmark_models.arms import measure_body
 from app.recognition.estimation.landmark_models.onnx_session import ModelSession, Tensor
@@ -256,7 +256,7 @@ def main() -> None:
     )
     with ExitStack() as stack:
         if arguments.without_finder:
-            stack.enter_context(patch.object(onnx_estimator, "finder_path", lambda: None))
+            stack.enter_context(patch.object(factory, "finder_path", lambda: None))
         estimator = stack.enter_context(closing(create_estimator()))
         runs = stack.enter_context(count_runs())
         for water in arguments.water:

@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from app.recognition import PoseSequence
-from app.recognition.poses.hand_shape import normalize_hands
+from app.recognition.poses.frame import normalize_hands
 from app.recognition.poses.sequence import HANDS_SHAPE, FloatArray
 
 ELBOW_DISTANCE = (1.0, 1.6)

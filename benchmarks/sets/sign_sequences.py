@@ -14,7 +14,7 @@ from dataclasses import replace
 import numpy as np
 
 from app.recognition import PoseSequence
-from app.recognition.poses.hand_shape import HandShape
+from app.recognition.poses.frame import HandShape
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.voters.registry import HAND_VOTERS
 from benchmarks.sets.held_signs import FRAME, RATE, HeldSigns

@@ -22,8 +22,8 @@ from app.recognition.simulation.background_motion import (
     simulate_background_motion,
     simulate_held_poses,
 )
-from app.recognition.triggers import arm_pose
-from app.recognition.triggers.arm_pose import HANGING_ARMS, LEAVE_SCORE, ArmPose, locate_joints
+from app.recognition.triggers import trigger
+from app.recognition.triggers.trigger import HANGING_ARMS, LEAVE_SCORE, ArmPose, locate_joints
 
 TOLERANCES = (0.25, 0.3, 0.35)
 HOLDS = (0.4, 0.6, 0.8, 1.0)
@@ -54,8 +54,8 @@ def compare_constants() -> Iterator[str]:
     hours = sum(float(each.time[-1]) for each in movements) / 3600
     for tolerance in TOLERANCES:
         with (
-            patch.object(arm_pose, "TOLERANCE", tolerance),
-            patch.object(arm_pose, "IDLE_TOLERANCE", 2 * tolerance),
+            patch.object(trigger, "TOLERANCE", tolerance),
+            patch.object(trigger, "IDLE_TOLERANCE", 2 * tolerance),
         ):
             for hold in HOLDS:
                 row = [f"{tolerance:g}", f"{hold:g}"]
@@ -83,7 +83,7 @@ def count_in_signals(data: Path) -> Iterator[str]:
     for name, pose in POSES.items():
         often = sum(
             count_held(
-                arm_pose.HOLD_SECONDS,
+                trigger.HOLD_SECONDS,
                 np.arange(len(path)) / FRAME_RATE,
                 pose.score(locate_joints(names, path)),
             )

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Final
 
 from app.recognition.errors import ModelError
-from app.recognition.text.hashing import hash_file
+from app.recognition.text.atomic_files import hash_file
 from release.models.sources import WHEEL
 
 OFFLINE_WAY: Final = "or copy app/recognition/models/files from a checkout that has the models"

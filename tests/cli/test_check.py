@@ -8,7 +8,7 @@ import pytest
 from app.cli.check import format_report
 from app.recognition import Gesture, Language
 from app.recognition.health.check import check_health
-from app.recognition.health.verdict import Verdict
+from app.recognition.health.finding import Verdict
 from app.recognition.phrases.grammar import Grammar
 from app.recognition.phrases.phrase import OneOf, Phrase
 from tests.command_line import OsgStudio

@@ -13,7 +13,7 @@ import pytest
 
 from app.cli.recognition_report import RecognitionReport
 from app.recognition import Gesture, Language
-from app.recognition.gestures.tuning import Tuning
+from app.recognition.gestures.profile import Tuning
 from app.recognition.poses.frame import Hand
 from app.recognition.poses.skeletons import BODY_25, COCO_18
 from tests.command_line import OsgStudio, Outcome

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from app.recognition import LanguageError, OsgError
-from app.recognition.gestures.tuning import Tuning
+from app.recognition.gestures.profile import Tuning
 from app.robot import ActiveLanguage
 from app.robot.language_watcher import POLL_INTERVAL, LanguageWatcher
 from tests.robot.languages import language_of, spoken

@@ -14,8 +14,7 @@ import pytest
 from app.recognition import Gesture, Language, OsgError, PoseSequence, record
 from app.recognition.errors import LandmarkError, LanguageError
 from app.recognition.estimation.estimator import PoseEstimator
-from app.recognition.estimation.factory import create_estimator
-from app.recognition.estimation.onnx_estimator import OnnxPoseEstimator
+from app.recognition.estimation.factory import OnnxPoseEstimator, create_estimator
 from app.recognition.recording.segmentation import TakeState
 from app.robot import (
     ActiveLanguage,

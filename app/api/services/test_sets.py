@@ -19,7 +19,7 @@ from app.api.services.stored_recognitions import WITHOUT
 from app.api.workers.tasks import TakeToRecognize, TestRun
 from app.api.workers.worker_messages import Failed, Finished, Progress, RecognizedTake
 from app.evaluation.proportion import Share
-from app.recognition.health.verdict import TestedGesture
+from app.recognition.health.finding import TestedGesture
 from app.recognition.recording.clip_range import find_clip_range
 
 

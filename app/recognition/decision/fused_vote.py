@@ -10,11 +10,13 @@ from types import MappingProxyType
 import numpy as np
 import numpy.typing as npt
 
-from app.recognition.decision.distinctions import find_tempo_dependent, find_unambiguous_traversals
 from app.recognition.decision.fusion import (
     OPINION_EXPONENT,
+    find_tempo_dependent,
+    find_unambiguous_traversals,
     fuse,
     hear,
+    list_views,
     weigh_distances,
     weigh_voters,
 )
@@ -43,12 +45,11 @@ from app.recognition.decision.references import (
     find_nearest,
 )
 from app.recognition.decision.result import Recognition, ScoreTable
-from app.recognition.decision.virtual_views import list_views
 from app.recognition.features.motion import SHARES, SIZE
 from app.recognition.features.trajectory_image import is_drawable
 from app.recognition.gestures.gesture import Gesture
+from app.recognition.gestures.profile import AS_THE_PROFILE, Tuning
 from app.recognition.gestures.switches import Sensitivity
-from app.recognition.gestures.tuning import AS_THE_PROFILE, Tuning
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.trajectory import Trajectory
 from app.recognition.preprocessing.holds import find_least_movement, measure_movement
@@ -217,8 +218,8 @@ class FusedVote:
         """Compare a condensed query with the nearest demonstration of every gesture.
 
         Mirror images count as demonstrations. Demonstrations with depth are turned to face as the
-        diver of the query does (`views`); where that is not known, to the view in which one of them
-        is nearest.
+        diver of the query does (`list_views`); where that is not known, to the view in which one of
+        them is nearest.
 
         A query that holds one hand shape is compared with the held shapes, a query that holds two
         in sequence with the sequences, and any other query with the movements. A query that holds a

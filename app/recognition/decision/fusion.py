@@ -15,6 +15,14 @@ Second opinion: another way of comparing, whose agreement counts.
 The score is a weighted mean, of which compressed velocities are the largest part. The voter
 `second_opinion` compares the same rows by directions alone. It fails on other takes, so that a take
 of which both say the same is more often right, and one of which they differ is more often wrong.
+
+Distinctions: the directions, sides and tempos that tell two gestures of a language apart.
+
+Virtual views: demonstrations rotated to the facing of the diver in the query.
+
+A camera sees a gesture differently when the diver is turned. A demonstration with depth is turned
+by the angle between the two divers, and compared as the camera would see it then. Depth itself is
+never compared: the depth of a pose model is too noisy for that.
 """
 
 from __future__ import annotations
@@ -24,11 +32,14 @@ from dataclasses import replace
 from typing import Final
 
 import numpy as np
+import numpy.typing as npt
 
 from app.recognition.decision.outcome import SCORE_FLOOR, find_answer
+from app.recognition.decision.references import References
 from app.recognition.decision.result import ScoreTable
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.voters.motion_voters import SecondOpinion
+from app.recognition.voters.registry import VOTER_NAMES
 from app.recognition.voters.voter import WeightedVoter
 
 PAIRS_BEFORE = 1
@@ -147,3 +158,133 @@ def hear(table: ScoreTable, factor: float) -> ScoreTable:
     released = replace(heard, novelty_by_view=novelty)
     answer = find_answer(released.scores, released.novelty, named)
     return released if answer == (named,) else heard
+
+
+SAME_FIGURE = 0.25
+"""Score below which two gestures are the same figure: that of two people's takes of one gesture. On
+air-drawn digits and commands the accuracy falls beyond 0.4, when useful traversals are lost."""
+
+TURNED = 0.2
+"""Ratio of backward to forward score below which two figures are one in opposite directions, such
+as two swipes."""
+
+CLEARANCE = 0.63
+"""Largest ratio of backward to forward score at which a direction matters: two circles with
+different starting points are about as near either way."""
+
+CLEARLY_SLOWER = 0.8
+"""Doublings of the duration from which two gestures differ in tempo: 1.75 times as long. One
+person's takes of a gesture differ by a quarter of a doubling, two people's by half."""
+
+
+def find_tempo_dependent(references: References, scores: FloatArray) -> npt.NDArray[np.bool_]:
+    """Return ``(S,)``: the demonstrations whose tempo counts, by their switch or automatically.
+
+    The tempo counts automatically for two gestures that differ in duration only. Parameters as for
+    `find_unambiguous_traversals`.
+    """
+    rows, owners = references.as_shown, references.row_owners
+    count = len(scores)
+    doublings = references.own_distances[VOTER_NAMES.index("tempo"), :count][:, rows]
+    apart = owners[rows[:count]][:, None] != owners[rows]
+    twins = (scores[:, rows] < SAME_FIGURE) & (doublings > CLEARLY_SLOWER) & apart
+    switches = np.array([each.switches.tempo for each in references.shown])
+    automatic = np.zeros(len(switches), dtype=bool)
+    automatic[references.rows[rows]] = twins.any(axis=0)
+    return np.asarray(np.where(switches == "auto", automatic, switches == "on"))
+
+
+def find_unambiguous_traversals(references: References, scores: FloatArray) -> npt.NDArray[np.intp]:
+    """Return the rows of the traversals by which no gesture is confused with another one.
+
+    Backward traversals are left out when another gesture is the same figure in the opposite
+    direction: for some starting points, the score with one of them reversed is below
+    `SAME_FIGURE` or `TURNED` times the forward score, and also below `CLEARANCE` times the forward
+    score. Exchanged sides are left out by the same rule. A direction that is switched off never
+    counts.
+
+    Parameters
+    ----------
+    references
+        In all traversals.
+    scores
+        ``(N, R)`` of the first N demonstrated traversals for all rows, without penalties.
+
+    """
+    owners = references.row_owners
+    scores = np.where(owners[references.as_shown[: len(scores)]][:, None] == owners, np.inf, scores)
+    backward = np.array([each.backward for each in references.traversals], dtype=bool)
+    exchanged = np.array([each.exchanged for each in references.traversals], dtype=bool)
+    free = {
+        owner
+        for owner, each in zip(references.owners.tolist(), references.shown, strict=True)
+        if each.switches.direction == "off"
+    }
+    keep = np.ones(len(references), dtype=bool)
+    for owner in np.unique(owners).tolist():
+        rows = owners == owner
+        plain = scores[:, rows & ~backward & ~exchanged].min(axis=1)
+        for otherwise, matters in ((backward, owner not in free), (exchanged, True)):
+            turned = scores[:, rows & otherwise].min(axis=1, initial=np.inf)
+            alike = np.maximum(SAME_FIGURE, TURNED * plain)
+            if matters and ((turned < alike) & (turned < CLEARANCE * plain)).any():
+                keep[rows & otherwise] = False
+    return np.flatnonzero(keep)
+
+
+STEP = 30
+"""Degrees between views: DTW tolerates the up to 15 degrees from the nearest view; steps of 15
+degrees changed no result by more than sampling error (`benchmarks/studies/views.md`)."""
+
+FARTHEST = 60
+"""Largest turn of a view in degrees: beyond, one shoulder hides the other."""
+
+PRECISION = 10
+"""Degrees to which the query's turn is rounded: about the precision of a pose model's depth, so
+that a dive has few views."""
+
+SIDEWAYS = 105
+"""Degrees from which a diver counts as not turned: seen from behind, left and right are uncertain.
+"""
+
+
+def list_views(references: References, facing: float | None) -> list[References]:
+    """Return the references as seen in the views that a query is compared with.
+
+    Parameters
+    ----------
+    references
+        As demonstrated.
+    facing
+        `Trajectory.facing` of the query. Where it is None but demonstrations have depth, all turns
+        are listed, because the diver may face any direction.
+
+    """
+    trajectories = [each.trajectory for each in references.shown]
+    facings = [None if each is None else each.facing for each in trajectories]
+    if all(each is None for each in facings):
+        return [references]
+    if facing is not None:
+        rounded = PRECISION * round(facing / PRECISION)
+        return [references.turn([choose_turn(rounded, each) for each in facings])]
+    return [
+        references.turn([0 if each is None else turn for each in facings])
+        for turn in sorted(range(-FARTHEST, FARTHEST + 1, STEP), key=abs)
+    ]
+
+
+def choose_turn(query: float, reference: float | None) -> int:
+    """Return the degrees by which a reference is turned to face as a query does.
+
+    Parameters
+    ----------
+    query, reference
+        Degrees by which each is turned from the camera; None: not known.
+
+    """
+    if reference is None:
+        return 0
+    between = (query - reference + 180.0) % 360.0 - 180.0
+    if abs(between) > SIDEWAYS:
+        return 0
+    return int(np.clip(round(between / STEP) * STEP, -FARTHEST, FARTHEST))

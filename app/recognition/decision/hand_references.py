@@ -13,8 +13,7 @@ import numpy.typing as npt
 
 from app.recognition.decision.fusion import weigh_distances
 from app.recognition.gestures.gesture import Gesture
-from app.recognition.poses.frame import SIDES, Side
-from app.recognition.poses.hand_shape import HandShape, mirror_hands
+from app.recognition.poses.frame import SIDES, HandShape, Side, mirror_hands
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.preprocessing.moving_hands import list_moving_sides
 from app.recognition.voters.registry import HAND_VOTERS

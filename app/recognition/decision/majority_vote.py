@@ -15,8 +15,8 @@ from app.recognition.decision.outcome import NOVELTIES
 from app.recognition.decision.result import Recognition, ScoreTable
 from app.recognition.features.trajectory_image import SIMPLIFICATION, draw
 from app.recognition.gestures.gesture import Gesture
+from app.recognition.gestures.profile import AS_THE_PROFILE, Tuning
 from app.recognition.gestures.switches import Sensitivity
-from app.recognition.gestures.tuning import AS_THE_PROFILE, Tuning
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.trajectory import Trajectory
 from app.recognition.voters.registry import PAPER_VOTERS
@@ -52,14 +52,12 @@ class MajorityVote:
         self._count, self._drawings = len(every), _group_drawings(every)
 
     @property
-    def landmarks(self) -> tuple[str, ...]:
-        """The salient landmarks of all gestures, in alphabetical order."""
-        return self.needed
-
-    @property
     def needed(self) -> tuple[str, ...]:
-        """The same landmarks: a query must move one of them."""
+        """The salient landmarks of all gestures, of which a query must move one, in order."""
         return tuple(sorted({name for salient in self._drawings for name in salient}))
+
+    landmarks = needed
+    """The same: these are followed in a query."""
 
     @property
     def weights(self) -> Mapping[str, float]:

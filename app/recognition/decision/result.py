@@ -274,7 +274,7 @@ class ScoreTable:
         ``(G,)``: index of each gesture's nearest demonstration.
     views
         ``(G,)``: degrees by which that demonstration was turned before it was compared
-        (`views.Views`).
+        (`list_views`).
     facing
         Degrees by which the query's diver is turned from the camera, positive to the diver's own
         left; None where not known.

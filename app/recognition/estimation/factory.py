@@ -1,30 +1,189 @@
 """Estimator factory: creates an estimator by the name of its backend.
 
 Composed estimator: a pose estimator of separate models for body and hands.
+
+ONNX estimator, the default: MediaPipe's own models on ONNX Runtime.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import Final, Literal, Protocol, get_args, runtime_checkable
 
 from app.recognition.errors import EstimatorError
 from app.recognition.estimation.estimator import PoseEstimator, check_image
+from app.recognition.estimation.landmark_models.arms import find_stray_wrist
+from app.recognition.estimation.landmark_models.body import BodyTracker
+from app.recognition.estimation.landmark_models.body_model import POSE_SIGNATURE, BodyModel
+from app.recognition.estimation.landmark_models.detector import PALM_LAYOUT, PERSON_LAYOUT, Detector
 from app.recognition.estimation.landmark_models.diver_hands import DiverHands
-from app.recognition.estimation.landmark_models.hand_tracker import HandSearch, HandTracker
-from app.recognition.estimation.landmark_models.onnx_session import Provider, check_provider
-from app.recognition.estimation.mediapipe_estimator import MediaPipeEstimator
-from app.recognition.estimation.onnx_estimator import (
-    DEFAULT_THREADS,
-    OnnxPoseEstimator,
-    body_tracker,
-    hand_tracker,
+from app.recognition.estimation.landmark_models.hand_model import (
+    HAND_SIGNATURE,
+    HandFinder,
+    HandModel,
 )
+from app.recognition.estimation.landmark_models.hand_tracker import HandSearch, HandTracker
+from app.recognition.estimation.landmark_models.onnx_session import (
+    ModelSession,
+    Provider,
+    Signature,
+    check_provider,
+)
+from app.recognition.estimation.mediapipe_estimator import MediaPipeEstimator
 from app.recognition.estimation.yolo_pose import YoloPose
+from app.recognition.models.storage import ModelName, finder_path, gloves_path, model_path
 from app.recognition.poses.frame import Body, FrameLandmarks, Hand, Image
 from app.recognition.poses.landmarks import POSE_LANDMARKS
+
+DEFAULT_THREADS: Final = 2
+"""One thread for the body and one for the hands, which run in parallel. Two threads within each
+model save at most a third of the time, threads beyond the machine's cores nothing.
+"""
+
+
+class OnnxPoseEstimator:
+    """Bodies and hands from images, tracked from frame to frame; a `PoseEstimator`.
+
+    Parameters
+    ----------
+    models
+        Folder with the ONNX files; by default the verified ones of the user's data folder.
+    threads
+        Processor threads in all. With one, everything runs in the caller's thread; from two on,
+        body and hands run side by side, each with its half of the threads. The result is the
+        same.
+    provider
+        ``"cpu"``, or ``"cuda"``, ``"tensorrt"``, ``"coreml"`` where ONNX Runtime has them.
+    hands
+        ``"pose"`` searches hands at the ends of the arms, and every few frames in the whole frame;
+        ``"palm"`` only in the whole frame, and bodies only where the person detector finds them, as
+        MediaPipe's landmarkers do.
+
+    Raises
+    ------
+    ModelError
+        When a model file is missing, damaged or not the expected one.
+    EstimatorError
+        When the provider is not available here, or `threads` is less than one.
+
+    """
+
+    def __init__(
+        self,
+        models: Path | None = None,
+        *,
+        threads: int = DEFAULT_THREADS,
+        provider: Provider = "cpu",
+        hands: HandSearch = "pose",
+    ) -> None:
+        if threads < 1:
+            raise EstimatorError(f"threads is {threads}; at least one is needed")
+        check_provider(provider)
+
+        share = max(1, threads // 2)
+        self._body = body_tracker(
+            models, threads=share, provider=provider, searches=hands == "pose"
+        )
+        self._hands = hand_tracker(models, search=hands, threads=share, provider=provider)
+        self._helper = ThreadPoolExecutor(1, "hands") if threads > 1 else None
+
+    def estimate(self, image: Image, time: float) -> FrameLandmarks:
+        """Find bodies and hands in `image`, taken `time` seconds after any fixed moment.
+
+        Parameters
+        ----------
+        image
+            ``(height, width, 3)`` RGB, upright; any size from 1 x 1 on and any strides.
+        time
+            Seconds. A time not after the previous frame's restarts the smoothing.
+
+        Raises
+        ------
+        EstimatorError
+            When `image` is not an RGB image of 8 bits.
+
+        """
+        check_image(image)
+        if self._helper is None:
+            found, followed = self._body.track(image, time), self._hands.follow(image, time)
+        else:
+            following = self._helper.submit(self._hands.follow, image, time)
+            found = self._body.track(image, time)
+            followed = following.result()
+        seen = self._hands.complete(image, followed, found.bodies, time)
+        self._body.seek(find_stray_wrist(seen.hands, seen.bodies))
+        return seen
+
+    def examine(self, image: Image) -> FrameLandmarks:
+        """Find body and hands in `image` alone, without effect on the tracking.
+
+        Raises
+        ------
+        EstimatorError
+            When `image` is not an RGB image of 8 bits.
+
+        """
+        check_image(image)
+        return self._hands.examine(image, self._body.examine(image).bodies)
+
+    def adopt(self, image: Image) -> FrameLandmarks:
+        """Return the last frame with what a search in it finds, and follow that from now on."""
+        return self._hands.adopt(image)
+
+    def spare(self, *, spares: bool) -> None:
+        """Look at hands that move or hang once a second, on a machine too slow for its camera."""
+        self._hands.spare(spares=spares)
+
+    def reset(self) -> None:
+        """Reset tracking and smoothing; call it before another clip."""
+        self._body.reset()
+        self._hands.reset()
+
+    def close(self) -> None:
+        """Release the models; the estimator cannot be used afterwards."""
+        if self._helper is not None:
+            self._helper.shutdown()
+        del self._body, self._hands
+
+
+def body_tracker(
+    models: Path | None = None, *, threads: int, provider: Provider, searches: bool = True
+) -> BodyTracker:
+    """Load MediaPipe's body models; see `OnnxPoseEstimator` and `BodyTracker`."""
+    load = partial(_session, models, threads, provider)
+    persons = Detector(load("pose_detection", PERSON_LAYOUT.signature), PERSON_LAYOUT)
+    return BodyTracker(
+        persons, BodyModel(load("pose_landmark_full", POSE_SIGNATURE)), searches=searches
+    )
+
+
+def hand_tracker(
+    models: Path | None = None, *, search: HandSearch, threads: int, provider: Provider
+) -> HandTracker:
+    """Load MediaPipe's hand models; see `OnnxPoseEstimator` for parameters and errors."""
+    load = partial(_session, models, threads, provider)
+    palms = Detector(load("palm_detection_full", PALM_LAYOUT.signature), PALM_LAYOUT)
+    model = load("hand_landmark_full", HAND_SIGNATURE)
+    open_taught = partial(ModelSession, threads=threads, provider=provider)
+    finder, gloves = (finder_path(), gloves_path()) if search == "pose" else (None, None)
+    return HandTracker(
+        palms,
+        HandModel(model, open_taught(gloves, HAND_SIGNATURE) if gloves else None),
+        search,
+        HandFinder(Detector(open_taught(finder, PALM_LAYOUT.signature), PALM_LAYOUT))
+        if finder
+        else None,
+    )
+
+
+def _session(
+    models: Path | None, threads: int, provider: Provider, name: ModelName, signature: Signature
+) -> ModelSession:
+    return ModelSession(model_path(name, models), signature, threads=threads, provider=provider)
 
 
 class BodyFinder(Protocol):
@@ -40,21 +199,8 @@ class BodyFinder(Protocol):
         """Reset the tracking, before another clip."""
 
 
-class HandFinder(Protocol):
-    """Finds the hands in the same frames."""
-
-    def find(self, image: Image, bodies: Sequence[Body]) -> tuple[Hand, ...]:
-        """Return up to two hands a person in `image`, larger first, given the bodies in it."""
-
-    def examine(self, image: Image, bodies: Sequence[Body]) -> tuple[Hand, ...]:
-        """Return those in `image` alone, without effect on the tracking."""
-
-    def reset(self) -> None:
-        """Reset the tracking, before another clip."""
-
-
 class TrackedHands:
-    """MediaPipe's hand models for use with another body model; a `HandFinder`.
+    """MediaPipe's hand models for use with another body model.
 
     Parameters
     ----------
@@ -95,7 +241,7 @@ class ComposedEstimator:
     """
 
     def __init__(
-        self, body: BodyFinder, hands: HandFinder | None, landmarks: tuple[str, ...]
+        self, body: BodyFinder, hands: TrackedHands | DiverHands | None, landmarks: tuple[str, ...]
     ) -> None:
         self._body, self._hands = body, hands
         self.landmarks = landmarks
@@ -199,7 +345,7 @@ def create_estimator(
             f"the library mediapipe finds the hands itself, got hands {hands!r}; use the backend "
             f"'onnx' with other hands"
         )
-    tracked: BodyFinder = body_tracker(threads=threads, provider=provider)
+    tracked = body_tracker(threads=threads, provider=provider)
     return ComposedEstimator(
         tracked, _hand_finder(hands, "pose", threads, provider), POSE_LANDMARKS
     )
@@ -237,7 +383,7 @@ def _yolo_file(file: str) -> Path:
 
 def _hand_finder(
     hands: str, search: HandSearch, threads: int, provider: Provider
-) -> HandFinder | None:
+) -> TrackedHands | DiverHands | None:
     if hands == NO_HANDS:
         return None
     if hands == MEDIAPIPE_HANDS:

@@ -10,9 +10,8 @@ from typing import Final
 import numpy as np
 import numpy.typing as npt
 
-from app.recognition.estimation.landmark_models.suppression import measure_overlaps
-from app.recognition.poses.gaps import MAX_GAP_SECONDS
-from app.recognition.poses.sequence import FloatArray
+from app.recognition.estimation.landmark_models.region import measure_overlaps
+from app.recognition.poses.sequence import MAX_GAP_SECONDS, FloatArray
 
 SAME_PERSON: Final = 0.3
 """Least intersection over union of a person's boxes in two frames. Stretching an arm halves it; two

@@ -16,9 +16,8 @@ import numpy.typing as npt
 
 from app.recognition.errors import ModelError
 from app.recognition.estimation.estimator import check_image
-from app.recognition.estimation.landmark_models.onnx_session import Provider
-from app.recognition.estimation.landmark_models.planar_model import Letterbox, PlanarModel
-from app.recognition.estimation.landmark_models.suppression import select_best
+from app.recognition.estimation.landmark_models.onnx_session import Letterbox, PlanarModel, Provider
+from app.recognition.estimation.landmark_models.region import select_best
 from app.recognition.estimation.person_tracker import PersonTracker, measure_prominence
 from app.recognition.poses.frame import Body, FrameLandmarks, Image
 from app.recognition.poses.landmarks import POSE_LANDMARKS

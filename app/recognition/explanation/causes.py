@@ -23,7 +23,6 @@ from app.recognition.decision.result import WRITTEN, ScoreTable
 from app.recognition.errors import OsgError, PoseError
 from app.recognition.explanation.blame import Blame
 from app.recognition.explanation.context import RecognitionContext
-from app.recognition.explanation.cuts import find_cuts
 from app.recognition.explanation.hand_differences import (
     find_held_difference,
     find_moving_hand_difference,
@@ -243,7 +242,7 @@ def _find_cut(context: RecognitionContext, expected: str, novelty: float) -> Cau
     at, best, found = context.language.labels.index(expected), novelty, None
     if context.compare_strokes(expected).differs is None:
         return None
-    for cut in find_cuts(context):
+    for cut in context.cuts:
         with suppress(OsgError):
             without = context.with_poses(cut.poses)
             now = float(without.score_table.novelty[at])

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from typing import Literal
 
 from app.recognition.decision.fused_vote import FusedVote
 from app.recognition.decision.result import Recognition, ScoreTable, Trace
@@ -13,9 +14,9 @@ from app.recognition.explanation.demonstration_faults import DemonstrationFault
 from app.recognition.explanation.strokes import Piece, transcribe, transcribe_gesture
 from app.recognition.explanation.transcript import Transcript, compare_transcripts
 from app.recognition.features.traversals import AS_SHOWN
-from app.recognition.gestures.demonstration import condense
+from app.recognition.gestures.demonstration import MIN_FRAMES, condense
 from app.recognition.gestures.gesture import Gesture
-from app.recognition.gestures.tuning import Tuning
+from app.recognition.gestures.profile import Tuning
 from app.recognition.language.language import Language
 from app.recognition.poses.sequence import PoseSequence
 from app.recognition.poses.trajectory import Trajectory
@@ -115,6 +116,26 @@ class KnownTakes:
         return repaired, broken
 
 
+@dataclass(frozen=True, eq=False)
+class Cut:
+    """A take without one of its strokes.
+
+    Attributes
+    ----------
+    where
+        At which end it is.
+    stroke
+        What is left out.
+    poses
+        The rest.
+
+    """
+
+    where: Literal["start", "end"]
+    stroke: Piece
+    poses: PoseSequence
+
+
 @dataclass(frozen=True, eq=False, kw_only=True)
 class RecognitionContext:
     """Everything that a recognition depends on.
@@ -176,6 +197,24 @@ class RecognitionContext:
         moved = condense(self.repair.trajectory)
         return transcribe(moved, find_salient_landmarks(moved), float(self.poses.time[0]))
 
+    @cached_property
+    def cuts(self) -> tuple[Cut, ...]:
+        """The take without its first and without its last stroke, which may be a salute's way.
+
+        A way is straight.
+        """
+        told = [each for each in self.strokes if each.kind != "pause"]
+        if len({each.hand for each in told}) != 1 or len(told) < 3:
+            return ()
+        start, end = float(self.poses.time[0]), float(self.poses.time[-1])
+        cuts = (
+            Cut("start", told[0], self.poses.between(told[1].start, end)),
+            Cut("end", told[-1], self.poses.between(start, told[-2].end)),
+        )
+        return tuple(
+            cut for cut in cuts if cut.stroke.kind == "line" and len(cut.poses) >= MIN_FRAMES
+        )
+
     @property
     def bridged(self) -> tuple[float, ...]:
         """The seconds of the frames in which a hand of `strokes` jumped, so that it is bridged."""
@@ -206,11 +245,6 @@ class RecognitionContext:
         if isinstance(self.recognizer.vote, FusedVote):
             return self.recognizer
         return Recognizer(self.language, "full")
-
-    @property
-    def trajectory(self) -> Trajectory:
-        """The trajectory that the voters compare."""
-        return self.trace.query
 
     @property
     def score_table(self) -> ScoreTable:

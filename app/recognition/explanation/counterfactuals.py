@@ -15,20 +15,20 @@ from typing import Annotated, Any, Final, Literal, get_args
 import numpy as np
 from pydantic import InstanceOf, PlainSerializer
 
-from app.recognition.decision.distinctions import CLEARLY_SLOWER
 from app.recognition.decision.fused_vote import FusedVote
+from app.recognition.decision.fusion import CLEARLY_SLOWER
+from app.recognition.decision.outcome import is_rejected
 from app.recognition.decision.result import Distance
 from app.recognition.errors import OsgError
 from app.recognition.explanation.blame import Blame
 from app.recognition.explanation.context import KnownTake, KnownTakes, RecognitionContext
-from app.recognition.explanation.cuts import find_cuts
 from app.recognition.explanation.strokes import transcribe_gesture
 from app.recognition.explanation.undoing import compare_with, find_better_range
 from app.recognition.features.motion import parse_body_part
 from app.recognition.gestures.demonstration import MAX_DEMONSTRATIONS
 from app.recognition.gestures.gesture import Gesture
+from app.recognition.gestures.profile import describe_repair
 from app.recognition.gestures.switches import Switch
-from app.recognition.gestures.tuning import describe_repair
 from app.recognition.text.wording import humanize
 
 TRIM_STEP = 0.1
@@ -189,16 +189,6 @@ class Counterfactual:
         return last, -gained, ORDER.index(kind), self.change.size, -self.margin
 
 
-def measure_margin(scores: Sequence[float], expected: int) -> float:
-    """Return the least other score minus the expected gesture's: positive when it is nearest.
-
-    Infinite where nothing else can be compared, minus infinite where the expected cannot.
-    """
-    if not np.isfinite(scores[expected]):
-        return -np.inf
-    return float(np.delete(scores, expected).min(initial=np.inf) - scores[expected])
-
-
 def find_counterfactuals(
     context: RecognitionContext, expected: str, blame: Sequence[Blame] = (), *, faulty: bool = False
 ) -> tuple[tuple[Counterfactual, ...], int]:
@@ -245,12 +235,6 @@ def find_counterfactuals(
     return tuple(ranked), tried
 
 
-def _is_far_off(context: RecognitionContext, expected: str) -> bool:
-    """Return whether a take is too far from a gesture to be accepted as one."""
-    novelty = context.result.novelty
-    return bool(novelty.size and novelty[context.language.labels.index(expected)] > 1)
-
-
 def _verify(
     context: RecognitionContext, change: Intervention, expected: str, demonstrations: KnownTakes
 ) -> Counterfactual | None:
@@ -273,12 +257,11 @@ def _verify(
             repaired=len(repaired),
             broken=len(broken),
         )
-    at = after.result.gestures.index(expected)
     return Counterfactual(
         change=change,
         label=expected,
         confidence=after.result.confidence,
-        margin=measure_margin(after.score_table.scores.tolist(), at),
+        margin=after.result.margin,
         effect=effect,
     )
 
@@ -312,7 +295,9 @@ def _cuts(
     """Cut the demonstrations that are at fault, for the known takes and for this one."""
     cuts = [(each.demonstration, each.start, each.end) for each in blame]
     table, at = context.score_table, context.language.labels.index(expected)
-    comparison = compare_with(context.recognizer, context.trajectory, table, at) if faulty else None
+    comparison = (
+        compare_with(context.recognizer, context.trace.query, table, at) if faulty else None
+    )
     if comparison and (better := find_better_range([comparison])):
         cuts.append((table.nearest_demonstration(at), *better))
     for number, start, end in cuts:
@@ -330,7 +315,7 @@ def _trims(context: RecognitionContext) -> Iterator[list[Intervention]]:
     )
     steps = np.arange(1, TRIM_STEPS + 1) * TRIM_STEP * (end - start)
     ways = ((1, 0), (0, -1), (1, -1), (-1, 0), (0, 1))
-    cuts = [(each.poses.time[0], each.poses.time[-1]) for each in find_cuts(context)]
+    cuts = [(each.poses.time[0], each.poses.time[-1]) for each in context.cuts]
     for spans in (
         cuts,
         *([(start + a * by, end + b * by) for by in steps] for a, b in ways),
@@ -355,7 +340,9 @@ def _gestures(context: RecognitionContext, expected: str) -> Iterator[list[Inter
         if gesture.trajectory is not None and isinstance(context.recognizer.vote, FusedVote):
             yield from _switches(context, label, expected=label == expected)
     shown = context.language.gesture(expected).single_demonstrations()
-    is_typical = context.closed and not _is_far_off(context, expected)
+    novelty = context.result.novelty
+    is_far = novelty.size and is_rejected(novelty[context.language.labels.index(expected)])
+    is_typical = context.closed and not is_far
     if is_typical and len(shown) < MAX_DEMONSTRATIONS:
         values = {"label": expected}
         yield [Intervention("further_demonstration", 1 / (len(shown) + 1), values)]

@@ -16,7 +16,7 @@ from typing import Final, Literal
 import numpy as np
 
 from app.recognition.poses.landmarks import WRISTS
-from app.recognition.poses.sequence import FloatArray, PoseSequence
+from app.recognition.poses.sequence import FloatArray, PoseSequence, fill_all_gaps
 from app.recognition.poses.trajectory import Trajectory
 from app.recognition.preprocessing.moving_hands import find_moving_hands, list_moving_sides
 from app.recognition.preprocessing.outliers import find_other_body, find_unsteady
@@ -27,7 +27,7 @@ from app.recognition.recording.recording import Recording
 from app.recognition.recording.salute import FEW_HANDS, HOLD_SECONDS, find_held
 from app.recognition.recording.segmentation import Bracket, find_brackets, takes_in
 from app.recognition.recording.trimming import measure_extent
-from app.recognition.triggers.arm_pose import HOLD_SECONDS as POSE_SECONDS
+from app.recognition.triggers.trigger import HOLD_SECONDS as POSE_SECONDS
 from app.recognition.triggers.trigger import SALUTE, Trigger
 
 Remedy = Literal["set_range", "show_again", "arm_trigger"]
@@ -332,15 +332,9 @@ def _follow_wrists(
     xy: FloatArray, time: FloatArray, landmarks: Sequence[str], grid: FloatArray
 ) -> list[FloatArray]:
     """Return the paths ``(G, 2)`` of the wrists that are seen, at the moments of a grid."""
-    paths = []
-    for name in WRISTS:
-        path = xy[:, landmarks.index(name)] if name in landmarks else xy[:0, 0]
-        seen = np.isfinite(path).all(axis=1)
-        if seen.any():
-            paths.append(
-                np.stack([np.interp(grid, time[seen], each[seen]) for each in path.T], axis=1)
-            )
-    return paths
+    wrists = [landmarks.index(name) for name in WRISTS if name in landmarks]
+    paths = np.moveaxis(fill_all_gaps(xy[:, wrists], time, grid), 1, 0)
+    return [path for path in paths if np.isfinite(path).all()]
 
 
 def _find_keypoint_faults(

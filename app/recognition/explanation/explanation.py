@@ -369,7 +369,7 @@ def _align(context: RecognitionContext, at: int) -> Alignment | None:
     """Align the query with a gesture as the recogniser compared them; None without movements."""
     table = context.score_table
     return align(
-        context.trajectory,
+        context.trace.query,
         table.find_nearest_demonstration(context.language.gestures, at),
         context.recognizer.landmarks,
         table.traversals[at],

@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from app.recognition.decision.hand_references import OTHER_SHAPE, HeldShapes, measure_shapes
-from app.recognition.poses.hand_shape import HandShape
+from app.recognition.poses.frame import HandShape
 from app.recognition.poses.landmarks import HAND_LANDMARKS
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.voters.hand_voters import FingerDirections, HandLandmarks

@@ -15,9 +15,8 @@ from functools import cached_property, lru_cache
 import numpy as np
 import numpy.typing as npt
 
-from app.recognition.poses.gaps import fill_all_gaps
 from app.recognition.poses.landmarks import TORSO, other_side
-from app.recognition.poses.sequence import FloatArray
+from app.recognition.poses.sequence import FloatArray, fill_all_gaps
 from app.recognition.poses.trajectory import Trajectory
 
 STEPS = 32

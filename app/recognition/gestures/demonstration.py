@@ -10,8 +10,13 @@ import numpy as np
 
 from app.recognition.errors import GestureError, PoseError
 from app.recognition.features.contour import BinaryImage
-from app.recognition.features.hand_image import draw_hands
-from app.recognition.features.trajectory_image import SIMPLIFICATION, SIZE, Drawing, draw
+from app.recognition.features.trajectory_image import (
+    SIMPLIFICATION,
+    SIZE,
+    Drawing,
+    draw,
+    draw_hands,
+)
 from app.recognition.poses.landmarks import POSE_LANDMARKS, UPPER_BODY, other_side
 from app.recognition.poses.sequence import FloatArray, PoseSequence
 from app.recognition.poses.trajectory import Trajectory
@@ -32,8 +37,7 @@ from app.recognition.preprocessing.salience import (
     find_salient_landmarks,
     measure_displacements,
 )
-from app.recognition.text.joiners import is_printable
-from app.recognition.text.look_alikes import compose
+from app.recognition.text.look_alikes import compose, is_printable
 from app.recognition.voters.registry import PAPER_VOTERS
 from app.recognition.voters.shape_voters import describe_drawing
 

@@ -31,11 +31,10 @@ from app.recognition.gestures.demonstration import (
     is_shown_by,
 )
 from app.recognition.gestures.switches import AUTOMATIC, Switches
-from app.recognition.poses.hand_shape import HandShape
+from app.recognition.poses.frame import HandShape
 from app.recognition.poses.sequence import FloatArray, PoseSequence
 from app.recognition.poses.trajectory import Trajectory
-from app.recognition.text.joiners import is_printable
-from app.recognition.text.look_alikes import compose, skeleton
+from app.recognition.text.look_alikes import compose, is_printable, skeleton
 from app.recognition.text.strict_json import read_json
 from app.recognition.voters.registry import PAPER_VOTERS
 from app.recognition.voters.shape_voters import DEGREE, FLOOR, HARMONICS, SAMPLES, describe_drawing

@@ -19,7 +19,7 @@ import numpy as np
 from app.recognition.decision.result import Recognition
 from app.recognition.errors import PoseError
 from app.recognition.explanation.causes import ALIKE
-from app.recognition.features.hand_image import draw_hands
+from app.recognition.features.trajectory_image import draw_hands
 from app.recognition.gestures.demonstration import condense
 from app.recognition.gestures.profile import PROFILES
 from app.recognition.health.ambiguity import find_ambiguities

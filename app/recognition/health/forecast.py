@@ -17,7 +17,7 @@ import numpy as np
 from app.recognition.decision.result import Recognition, ScoreTable
 from app.recognition.gestures.demonstration import MAX_DEMONSTRATIONS, condense
 from app.recognition.gestures.gesture import Gesture
-from app.recognition.health.verdict import Rate, to_plain
+from app.recognition.health.finding import Rate, to_plain
 from app.recognition.language.language import Language
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.recognizer import Recognizer

@@ -14,9 +14,8 @@ import numpy as np
 from app.recognition.decision.fused_vote import FusedVote
 from app.recognition.gestures.gesture import Gesture
 from app.recognition.gestures.switches import Sensitivity
-from app.recognition.health.finding import Finding
+from app.recognition.health.finding import DIGITS, Finding, Rate, to_plain
 from app.recognition.health.forecast import Forecast
-from app.recognition.health.verdict import DIGITS, Rate, to_plain
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.trajectory import Trajectory
 from app.recognition.recognizer import Recognizer
@@ -26,8 +25,7 @@ from app.recognition.simulation.background_motion import (
     simulate_background_motion,
     simulate_held_poses,
 )
-from app.recognition.triggers.arm_pose import ArmPose, locate_joints
-from app.recognition.triggers.trigger import Trigger
+from app.recognition.triggers.trigger import ArmPose, Trigger, locate_joints
 
 PEOPLE = 100
 """Simulated people who hold each pose: the interval of a rate of 5 % is about 2 to 11 %."""

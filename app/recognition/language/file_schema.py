@@ -18,14 +18,20 @@ from app.recognition.decision.outcome import MOST_REFUSED_AT_ALL
 from app.recognition.errors import point_to
 from app.recognition.features.trajectory_image import SIMPLIFICATION
 from app.recognition.gestures.demonstration import MAX_DEMONSTRATIONS, MAX_DIVER_LENGTH
-from app.recognition.gestures.profile import DEFAULT_PROFILE, ProfileName, find_profile
+from app.recognition.gestures.profile import (
+    AS_THE_PROFILE,
+    DEFAULT_PROFILE,
+    MAX_FACTOR,
+    MAX_SIMPLIFICATION,
+    ProfileName,
+    Tuning,
+    find_profile,
+)
 from app.recognition.gestures.switches import Switch
-from app.recognition.gestures.tuning import AS_THE_PROFILE, MAX_FACTOR, MAX_SIMPLIFICATION, Tuning
 from app.recognition.language.grammar_entry import FiniteFloat, GrammarEntry, Name, Text
 from app.recognition.poses.landmarks import HAND_LANDMARKS
 from app.recognition.text.described import STRICT
-from app.recognition.triggers.arm_pose import ArmPose
-from app.recognition.triggers.trigger import SALUTE, Trigger, TriggerKind
+from app.recognition.triggers.trigger import SALUTE, ArmPose, Trigger, TriggerKind
 from app.recognition.voters.registry import FORMER_VOTERS, PAPER_VOTERS
 
 

@@ -24,7 +24,7 @@ from app.recognition.language.file_schema import (
     RatesEntry,
     TrajectoryEntry,
 )
-from app.recognition.poses.hand_shape import HandShape
+from app.recognition.poses.frame import HandShape
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.trajectory import Trajectory
 from app.recognition.text.strict_json import build_pointer

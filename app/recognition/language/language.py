@@ -12,8 +12,13 @@ from typing import Any
 from app.recognition.decision.outcome import MOST_REFUSED, MOST_REFUSED_AT_ALL
 from app.recognition.errors import LanguageError, point_to
 from app.recognition.gestures.gesture import SETTINGS, Gesture, make_label
-from app.recognition.gestures.profile import DEFAULT_PROFILE, ProfileName, find_profile
-from app.recognition.gestures.tuning import AS_THE_PROFILE, Tuning
+from app.recognition.gestures.profile import (
+    AS_THE_PROFILE,
+    DEFAULT_PROFILE,
+    ProfileName,
+    Tuning,
+    find_profile,
+)
 from app.recognition.language.file import name_file, read_content, read_document, write_document
 from app.recognition.language.file_schema import (
     FORMAT,
@@ -30,8 +35,13 @@ from app.recognition.language.grammar_entry import entry_to_grammar, grammar_to_
 from app.recognition.phrases.grammar import Grammar
 from app.recognition.poses.landmarks import SKELETON
 from app.recognition.text.atomic_files import write_atomically
-from app.recognition.text.joiners import is_printable, without_joiners
-from app.recognition.text.look_alikes import compose, find_confusable, list_look_alikes
+from app.recognition.text.look_alikes import (
+    compose,
+    find_confusable,
+    is_printable,
+    list_look_alikes,
+    without_joiners,
+)
 from app.recognition.text.strict_json import build_pointer
 from app.recognition.text.wording import join_words
 from app.recognition.triggers.trigger import SALUTE, Trigger

@@ -15,8 +15,7 @@ from pathlib import Path
 from typing import Final, Literal, TypeVar
 
 from app.recognition.errors import ModelError
-from app.recognition.text.atomic_files import write_atomically
-from app.recognition.text.hashing import hash_file
+from app.recognition.text.atomic_files import hash_file, write_atomically
 
 ModelName = Literal[
     "pose_detection", "pose_landmark_full", "palm_detection_full", "hand_landmark_full"

@@ -29,7 +29,7 @@ from app.recognition.phrases.phrase import (
     find_placeholders,
     find_template_fault,
 )
-from app.recognition.text.joiners import is_printable, without_joiners
+from app.recognition.text.look_alikes import is_printable, without_joiners
 from app.recognition.text.strict_json import build_pointer
 
 DEFAULT_TIMEOUT = 10.0

@@ -11,10 +11,16 @@ from typing import Any, Literal, TypeVar
 import numpy as np
 
 from app.recognition.errors import PoseError
-from app.recognition.poses.gaps import MAX_GAP_SECONDS, bridge_short_gaps, fill_all_gaps
-from app.recognition.poses.hand_shape import HandShape, mirror_hands
+from app.recognition.poses.frame import HandShape, mirror_hands
 from app.recognition.poses.landmarks import HIPS, SHOULDERS, TORSO, other_side
-from app.recognition.poses.sequence import FloatArray, PoseSequence, find_columns
+from app.recognition.poses.sequence import (
+    MAX_GAP_SECONDS,
+    FloatArray,
+    PoseSequence,
+    bridge_short_gaps,
+    fill_all_gaps,
+    find_columns,
+)
 
 Result = TypeVar("Result")
 
@@ -227,7 +233,7 @@ class Trajectory:
     def fill_gaps(self, max_gap: float = MAX_GAP_SECONDS) -> Trajectory:
         """Bridge gaps of at most `max_gap` seconds by straight lines; longer ones stay NaN.
 
-        See `gaps.bridge_short_gaps`. Depth is smooth, and used for known landmarks only: it is
+        See `bridge_short_gaps`. Depth is smooth, and used for known landmarks only: it is
         interpolated in all gaps.
         """
         depth = None if self.depth is None else _interpolate_depth(self.depth, self.time)

@@ -15,9 +15,10 @@ from typing import Final
 import numpy as np
 import numpy.typing as npt
 
-from app.recognition.poses.frame import SIDES, Side
-from app.recognition.poses.hand_shape import (
+from app.recognition.poses.frame import (
+    SIDES,
     HandShape,
+    Side,
     choose_frames,
     measure_palms,
     normalize_hands,

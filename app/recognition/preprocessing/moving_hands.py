@@ -8,8 +8,7 @@ from typing import Final
 import numpy as np
 
 from app.recognition.features.motion import parse_body_part
-from app.recognition.poses.frame import SIDES, Side
-from app.recognition.poses.hand_shape import HandShape, choose_frames, normalize_hands
+from app.recognition.poses.frame import SIDES, HandShape, Side, choose_frames, normalize_hands
 from app.recognition.poses.sequence import FloatArray, PoseSequence
 from app.recognition.preprocessing.holds import MOST_CHANGE, measure_distances
 

@@ -21,9 +21,8 @@ from typing import TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from app.recognition.poses.gaps import MAX_GAP_SECONDS, fill_all_gaps
 from app.recognition.poses.landmarks import HIPS, POSE_LANDMARKS, SHOULDERS, TORSO, UPPER_BODY
-from app.recognition.poses.sequence import FloatArray
+from app.recognition.poses.sequence import MAX_GAP_SECONDS, FloatArray, fill_all_gaps
 from app.recognition.poses.trajectory import Trajectory
 from app.recognition.preprocessing.salience import measure_displacements
 

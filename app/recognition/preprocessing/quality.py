@@ -12,8 +12,7 @@ from typing import Literal
 import numpy as np
 import numpy.typing as npt
 
-from app.recognition.poses.gaps import MAX_GAP_SECONDS
-from app.recognition.poses.sequence import FloatArray, PoseSequence
+from app.recognition.poses.sequence import MAX_GAP_SECONDS, FloatArray, PoseSequence
 from app.recognition.poses.trajectory import Trajectory
 from app.recognition.preprocessing.outliers import measure_body_unit
 from app.recognition.text.wording import humanize

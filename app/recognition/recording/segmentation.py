@@ -21,8 +21,8 @@ from app.recognition.recording.salute import SHORTEST_TAKE as SHORTEST_TAKE
 from app.recognition.recording.salute import HeldTrigger
 from app.recognition.recording.trimming import Span, find_stroke
 from app.recognition.recording.unseen import find_holes, find_missable
-from app.recognition.triggers.arm_pose import HOLD_SECONDS as POSE_SECONDS
-from app.recognition.triggers.arm_pose import LEAVE_SCORE as POSE_LEAVE_SCORE
+from app.recognition.triggers.trigger import HOLD_SECONDS as POSE_SECONDS
+from app.recognition.triggers.trigger import LEAVE_SCORE as POSE_LEAVE_SCORE
 from app.recognition.triggers.trigger import SALUTE, Trigger
 
 

@@ -11,7 +11,7 @@ time does not run ahead."""
 
 SHORTEST_STEP, LONGEST_STEP = 1 / 1000, 0.5
 """Plausible seconds between neighbouring frames: from a high-speed camera's 1000 frames a second
-to the longest gap that a trajectory bridges (`app.recognition.poses.gaps.MAX_GAP_SECONDS`).
+to the longest gap that a trajectory bridges (`app.recognition.poses.sequence.MAX_GAP_SECONDS`).
 
 A container's nominal rate is often wrong (1000 a second in a WebM recorded by a browser)."""
 

@@ -22,7 +22,7 @@ import numpy as np
 
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.trajectory import Trajectory
-from app.recognition.triggers.arm_pose import ArmPose
+from app.recognition.triggers.trigger import ArmPose
 
 RATE = 25.0
 """Moments per second, a usual camera's frame rate."""
@@ -283,7 +283,7 @@ class HeldPose:
     time
         ``(T,)`` seconds from 0.
     places
-        ``(T, 4, 2)``, as of `arm_pose.locate_arms`.
+        ``(T, 4, 2)``, as of `trigger.locate_arms`.
 
     """
 

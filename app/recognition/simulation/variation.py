@@ -34,11 +34,10 @@ import numpy as np
 import numpy.typing as npt
 
 from app.recognition.errors import OsgError
-from app.recognition.features.hand_image import FINGER_BONES
 from app.recognition.features.motion import SIDES, parse_body_part
-from app.recognition.poses.gaps import fill_all_gaps
-from app.recognition.poses.hand_shape import HandShape, normalize_hands
-from app.recognition.poses.sequence import FloatArray
+from app.recognition.features.trajectory_image import FINGER_BONES
+from app.recognition.poses.frame import HandShape, normalize_hands
+from app.recognition.poses.sequence import FloatArray, fill_all_gaps
 from app.recognition.poses.trajectory import Trajectory
 from app.recognition.preprocessing.limb_length import limit_limbs
 

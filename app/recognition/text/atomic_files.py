@@ -1,7 +1,11 @@
-"""Atomic files: a reader and a power cut find the old content or the new one, never a part."""
+"""Atomic files: a reader and a power cut find the old content or the new one, never a part.
+
+File hashes: the SHA-256 of files of any size, read in chunks.
+"""
 
 from __future__ import annotations
 
+import hashlib
 import os
 import secrets
 from collections.abc import Iterator
@@ -45,3 +49,24 @@ def write_atomically(path: Path, content: bytes) -> None:
     """Replace a file by one with this content; see `replace_file`."""
     with replace_file(path) as file:
         file.write(content)
+
+
+CHUNK_BYTES = 2**18
+"""Size of a chunk; `hashlib.file_digest`, which reads as much, needs Python 3.11."""
+
+
+def hash_file(*paths: Path) -> str:
+    """Return the SHA-256 of a file's content, or of several, one after the other, in hexadecimal.
+
+    Raises
+    ------
+    OSError
+        When it cannot be read.
+
+    """
+    digest = hashlib.sha256()
+    for path in paths:
+        with path.open("rb") as file:
+            while chunk := file.read(CHUNK_BYTES):
+                digest.update(chunk)
+    return digest.hexdigest()

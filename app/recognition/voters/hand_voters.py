@@ -7,8 +7,8 @@ from itertools import combinations
 
 import numpy as np
 
-from app.recognition.features.hand_image import FINGER_BONES
-from app.recognition.poses.hand_shape import HandShape
+from app.recognition.features.trajectory_image import FINGER_BONES
+from app.recognition.poses.frame import HandShape
 from app.recognition.poses.landmarks import HAND_LANDMARKS
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.voters.voter import WeightedVoter, euclidean_distances

@@ -10,8 +10,7 @@ from typing import Final, Protocol
 from app.recognition import PoseSequence, Take
 from app.recognition.recording.live_segmentation import LiveTakes
 from app.recognition.recording.segmentation import LONGEST_TAKE, TakeState
-from app.recognition.triggers.arm_pose import mostly_hang
-from app.recognition.triggers.trigger import Trigger
+from app.recognition.triggers.trigger import Trigger, mostly_hang
 from app.robot.active_language import ActiveLanguage
 from app.robot.events import Event, StateChanged, TakeRecognized, TakeRejected
 from app.robot.listeners.stream_order import StreamOrder
@@ -20,7 +19,7 @@ from app.robot.take_result import judge_take, reject_take
 GAP_CONFIDENCE: Final = 0.9
 """Confidence asked for in a gap between two takes, from which it is recognised as a gesture. Fewer
 than one salute in ten is missed, so that a gap is seldom a take. The 31 gaps of
-`arm_pose.MOST_HANGING` had 0.31 to 0.66."""
+`trigger.MOST_HANGING` had 0.31 to 0.66."""
 
 
 def explain_unclosed(trigger: Trigger) -> str:

@@ -28,7 +28,7 @@ frame every few seconds."""
 
 SILENT_SECONDS: Final = 5.0
 """Seconds without a frame after which a stream counts as lost. The slowest stream in which a
-gesture could be seen gives two frames a second (`app.recognition.poses.gaps.MAX_GAP_SECONDS`)."""
+gesture could be seen gives two frames a second (`poses.sequence.MAX_GAP_SECONDS`)."""
 
 MOST_PIXELS: Final = 16_000_000
 """Largest number of pixels of one frame, as for clips (`VideoLimits`)."""

@@ -13,14 +13,12 @@ import numpy as np
 from app.recognition import Gesture, Language
 from app.recognition.explanation.strokes import transcribe_gesture
 from app.recognition.explanation.transcript import describe_strokes
-from app.recognition.features.hand_image import PlacedHands, place_hands
-from app.recognition.features.trajectory_image import SIZE
+from app.recognition.features.trajectory_image import SIZE, PlacedHands, place_hands
 from app.recognition.language.file import seal, short_code
 from app.recognition.poses.landmarks import FINGERS, HAND_LANDMARKS
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.text.wording import humanize, join_words
-from app.recognition.triggers.arm_pose import ArmPose
-from app.recognition.triggers.trigger import Trigger
+from app.recognition.triggers.trigger import ArmPose, Trigger
 from app.ui.slate.primitives import Disc, Page, Part, Path, Point, Shape, Words, fit_size, wrap
 
 A4: Final = (210.0, 297.0)

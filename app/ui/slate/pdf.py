@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from app.recognition.errors import OsgError
-from app.recognition.text.joiners import JOINERS
+from app.recognition.text.look_alikes import JOINERS
 from app.ui.slate.primitives import Disc, Page, Part, Shape, Words
 from app.ui.slate.primitives import Path as Line
 

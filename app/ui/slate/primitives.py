@@ -5,7 +5,7 @@ from __future__ import annotations
 import unicodedata
 from dataclasses import dataclass
 
-from app.recognition.text.joiners import JOINERS
+from app.recognition.text.look_alikes import JOINERS
 
 Point = tuple[float, float]
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from html import escape
 
-from app.recognition.text.joiners import JOINERS
+from app.recognition.text.look_alikes import JOINERS
 from app.ui.slate.primitives import Disc, Page, Part, Path, Point, Shape
 
 FONTS = "DejaVu Sans, Noto Sans, Arial, Helvetica, sans-serif"

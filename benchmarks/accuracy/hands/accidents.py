@@ -23,8 +23,8 @@ import numpy.typing as npt
 from app.evaluation.proportion import Share
 from app.recognition import Gesture, Language, PoseError, Recognizer, find_takes
 from app.recognition.errors import GestureError
+from app.recognition.gestures.profile import AS_THE_PROFILE, Tuning
 from app.recognition.gestures.switches import Switches
-from app.recognition.gestures.tuning import AS_THE_PROFILE, Tuning
 from app.resources import samples_dir
 from benchmarks.arguments import set_arguments
 from benchmarks.sets.held_signs import HeldSigns, read_held_signs

@@ -30,7 +30,7 @@ import numpy.typing as npt
 
 from app.evaluation.proportion import Share
 from app.recognition import Gesture, GestureError, Language, PoseError, Recognizer
-from app.recognition.poses.hand_shape import HandShape
+from app.recognition.poses.frame import HandShape
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.voters.hand_voters import HandVoter
 from app.recognition.voters.registry import HAND_VOTERS

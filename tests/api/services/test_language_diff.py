@@ -6,8 +6,8 @@ import pytest
 
 from app.api.services.language_diff import compare_gestures, describe_changes
 from app.recognition import Gesture, Language
+from app.recognition.gestures.profile import Tuning
 from app.recognition.gestures.switches import Switches
-from app.recognition.gestures.tuning import Tuning
 from tests.api.recordings import recording_of
 
 

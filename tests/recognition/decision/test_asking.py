@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from app.recognition import Gesture, Language, Recognition, Recognizer
 from app.recognition.decision.outcome import ASK_RATIO, SURE, find_answer
-from app.recognition.gestures.tuning import Tuning
+from app.recognition.gestures.profile import Tuning
 from tests.recognition.strategies import circle, line, recording, square, wedge
 
 WITHIN, BEYOND = (1 + ASK_RATIO) / 2, 2 * ASK_RATIO - 1

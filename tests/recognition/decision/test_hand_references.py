@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from app.recognition.decision.hand_references import HeldReferences, score_hands
 from app.recognition.gestures.gesture import Gesture
 from app.recognition.gestures.switches import Switches
-from app.recognition.poses.hand_shape import HandShape, mirror_hands
+from app.recognition.poses.frame import HandShape, mirror_hands
 from app.recognition.poses.trajectory import Trajectory
 from tests.recognition.held_takes import FIST, FLAT, TWO, fingers, hold
 

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from app.recognition import Gesture, Language, PoseSequence, Recognizer
+from app.recognition.gestures.profile import Tuning
 from app.recognition.gestures.switches import Switch, Switches
-from app.recognition.gestures.tuning import Tuning
 from app.recognition.voters.registry import HAND_VOTER_NAMES, VOTER_NAMES
 from tests.recognition.held_takes import FIST, FLAT, TWO, hold
 from tests.recognition.moving_takes import circle, corner, draw, without_hands

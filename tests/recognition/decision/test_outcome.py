@@ -20,8 +20,8 @@ from app.recognition.decision.outcome import (
     OthersScores,
     choose_limit,
 )
+from app.recognition.gestures.profile import Tuning
 from app.recognition.gestures.switches import Switches
-from app.recognition.gestures.tuning import Tuning
 from app.recognition.poses.sequence import FloatArray
 from tests.recognition.demonstrations import TAUGHT, shown_by
 from tests.recognition.strategies import SHAPES, circle, recording

@@ -8,7 +8,7 @@ import pytest
 from app.recognition import Gesture, Language, PoseSequence, Recognizer
 from app.recognition.decision.fusion import AGREED, OPINION_EXPONENT, ORDER_RATIO, hear
 from app.recognition.decision.result import ScoreTable
-from app.recognition.gestures.tuning import Tuning
+from app.recognition.gestures.profile import Tuning
 from tests.recognition.strategies import SHAPES, circle, recording, square, wedge
 
 NAMES = ("circle", "line", "square", "wedge")

@@ -14,7 +14,7 @@ from app.recognition import (
     Recognizer,
     explain,
 )
-from app.recognition.decision.virtual_views import FARTHEST, STEP, choose_turn
+from app.recognition.decision.fusion import FARTHEST, STEP, choose_turn
 from app.recognition.gestures.switches import Switches
 from tests.recognition.strategies import SHAPES, Shape, in_space, recording
 

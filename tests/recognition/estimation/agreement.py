@@ -18,8 +18,8 @@ from pathlib import Path
 import numpy as np
 
 from app.recognition.estimation.estimator import PoseEstimator
+from app.recognition.estimation.factory import OnnxPoseEstimator
 from app.recognition.estimation.mediapipe_estimator import MediaPipeEstimator
-from app.recognition.estimation.onnx_estimator import OnnxPoseEstimator
 from app.recognition.poses.frame import FrameLandmarks, Hand, Image
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.recording.video import VideoFrame

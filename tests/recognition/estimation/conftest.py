@@ -7,8 +7,8 @@ from collections.abc import Iterator
 import pytest
 
 from app.recognition.errors import EstimatorError
+from app.recognition.estimation.factory import OnnxPoseEstimator
 from app.recognition.estimation.mediapipe_estimator import MediaPipeEstimator
-from app.recognition.estimation.onnx_estimator import OnnxPoseEstimator
 
 
 @pytest.fixture(scope="session")

@@ -9,8 +9,7 @@ from typing import Any, cast
 import pytest
 
 from app.recognition.errors import EstimatorError, ModelError
-from app.recognition.estimation.factory import create_estimator
-from app.recognition.estimation.onnx_estimator import OnnxPoseEstimator
+from app.recognition.estimation.factory import OnnxPoseEstimator, create_estimator
 
 
 @pytest.mark.usefixtures("installed_models")

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from app.recognition.errors import EstimatorError
+from app.recognition.estimation.factory import OnnxPoseEstimator
 from app.recognition.estimation.mediapipe_estimator import MediaPipeEstimator
-from app.recognition.estimation.onnx_estimator import OnnxPoseEstimator
 from app.recognition.estimation.water import Examiner
 from app.recognition.recording.video import VideoFrame
 from tests.recognition.estimation.clip_frames import clip_frames

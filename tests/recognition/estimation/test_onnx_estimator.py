@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from app.recognition.errors import EstimatorError
-from app.recognition.estimation.onnx_estimator import OnnxPoseEstimator
+from app.recognition.estimation.factory import OnnxPoseEstimator
 from app.recognition.poses.frame import FrameLandmarks, Image
 from app.recognition.poses.landmarks import POSE_LANDMARKS
 from app.recognition.recording.video import VideoFrame

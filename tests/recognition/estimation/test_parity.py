@@ -12,8 +12,8 @@ from pathlib import Path
 
 import pytest
 
+from app.recognition.estimation.factory import OnnxPoseEstimator
 from app.recognition.estimation.mediapipe_estimator import MediaPipeEstimator
-from app.recognition.estimation.onnx_estimator import OnnxPoseEstimator
 from tests.conftest import SHARED_DATA
 from tests.recognition.estimation.agreement import (
     Agreement,

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from app.recognition.estimation.onnx_estimator import OnnxPoseEstimator
+from app.recognition.estimation.factory import OnnxPoseEstimator
 from app.recognition.poses.sequence import FloatArray
 from tests.recognition.estimation.clip_frames import clip_frames
 

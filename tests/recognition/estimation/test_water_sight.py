@@ -9,8 +9,13 @@ import numpy as np
 import pytest
 
 from app.recognition.errors import EstimatorError
-from app.recognition.estimation.factory import ComposedEstimator, TrackedHands
-from app.recognition.estimation.onnx_estimator import OnnxPoseEstimator, body_tracker, hand_tracker
+from app.recognition.estimation.factory import (
+    ComposedEstimator,
+    OnnxPoseEstimator,
+    TrackedHands,
+    body_tracker,
+    hand_tracker,
+)
 from app.recognition.estimation.water import WaterSight, is_murky
 from app.recognition.poses.frame import FrameLandmarks, Image
 from app.recognition.poses.landmarks import POSE_LANDMARKS

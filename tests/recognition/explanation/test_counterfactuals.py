@@ -12,13 +12,11 @@ from app.recognition.explanation.counterfactuals import (
     Intervention,
     find_counterfactuals,
     list_interventions,
-    measure_margin,
 )
 from app.recognition.explanation.demonstration_faults import DemonstrationFault, FaultKind
 from app.recognition.explanation.explanation import explain
 from app.recognition.gestures.demonstration import MAX_DEMONSTRATIONS
-from app.recognition.gestures.profile import PROFILES
-from app.recognition.gestures.tuning import Tuning
+from app.recognition.gestures.profile import PROFILES, Tuning
 from app.recognition.poses.landmarks import other_side
 from tests.recognition.damaged_poses import with_sides_exchanged
 from tests.recognition.demonstrations import drawn_language, drawn_recognizer
@@ -309,19 +307,6 @@ def test_a_gesture_with_as_many_demonstrations_as_it_may_have_gets_no_other() ->
     kinds = {each.kind for series in list_interventions(made, "circle") for each in series}
     assert "trim" in kinds
     assert "further_demonstration" not in kinds
-
-
-@pytest.mark.parametrize(
-    ("scores", "expected"),
-    [
-        ([0.2, 0.5, 0.9], 0.3),
-        ([0.6, 0.5, 0.9], -0.1),
-        ([0.2], float("inf")),
-        ([float("inf"), 0.5], -float("inf")),
-    ],
-)
-def test_the_margin_is_to_the_nearest_other(scores: list[float], expected: float) -> None:
-    assert measure_margin(scores, 0) == pytest.approx(expected)
 
 
 @pytest.mark.parametrize(("hand", "offered"), [("right_wrist", False), ("left_wrist", True)])

@@ -15,8 +15,7 @@ from app.recognition.explanation.context import RecognitionContext
 from app.recognition.explanation.explanation import Explanation, explain
 from app.recognition.explanation.strokes import transcribe_gesture
 from app.recognition.explanation.transcript import describe_strokes
-from app.recognition.gestures.profile import PROFILES
-from app.recognition.gestures.tuning import Tuning
+from app.recognition.gestures.profile import PROFILES, Tuning
 from tests.recognition.damaged_poses import with_sides_exchanged
 from tests.recognition.demonstrations import drawn_language, drawn_recognizer
 from tests.recognition.explanation.test_causes import corners

@@ -6,7 +6,7 @@ import pytest
 from app.recognition import Gesture, Language, RecognitionContext, Recognizer, explain
 from app.recognition.decision.hand_references import HeldShapes
 from app.recognition.explanation.hand_differences import find_held_difference, measure_bends
-from app.recognition.poses.hand_shape import HandShape
+from app.recognition.poses.frame import HandShape
 from app.recognition.poses.sequence import PoseSequence
 from tests.recognition.held_takes import CURLED, FIST, FLAT, TWO, fingers, follow, hold
 from tests.recognition.parametric_hand import Finger, Fingers, hand_xy

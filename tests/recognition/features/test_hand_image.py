@@ -2,9 +2,8 @@
 
 import numpy as np
 
-from app.recognition.features.hand_image import draw_hands, place_hands
-from app.recognition.features.trajectory_image import MARGIN, SIZE
-from app.recognition.poses.hand_shape import HandShape
+from app.recognition.features.trajectory_image import MARGIN, SIZE, draw_hands, place_hands
+from app.recognition.poses.frame import HandShape
 from tests.recognition.held_takes import FIST, FLAT
 from tests.recognition.parametric_hand import hand_xy
 

@@ -22,7 +22,7 @@ from app.recognition import (
     takes_in,
 )
 from app.recognition.gestures.switches import Switches
-from app.recognition.poses.hand_shape import mirror_hands
+from app.recognition.poses.frame import mirror_hands
 from tests.recognition.held_takes import FIST, FLAT, TWO, fingers, follow, hold
 from tests.recognition.parametric_hand import Fingers
 from tests.recognition.strategies import circle, recording

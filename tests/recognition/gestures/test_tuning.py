@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from app.recognition import Gesture, Language, LanguageError, OsgError, Recognizer
 from app.recognition.gestures.demonstration import condense
-from app.recognition.gestures.tuning import Tuning
+from app.recognition.gestures.profile import Tuning
 from app.recognition.poses.trajectory import Trajectory
 from app.recognition.voters.registry import VOTER_NAMES
 from tests.recognition.damaged_poses import with_sides_exchanged

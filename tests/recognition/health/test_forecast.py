@@ -8,6 +8,7 @@ import pytest
 from app.recognition import Gesture, Language, Recognizer
 from app.recognition.gestures.demonstration import condense
 from app.recognition.health.check import check_health, find_forecast_findings
+from app.recognition.health.finding import Rate
 from app.recognition.health.forecast import (
     LEAST_GAIN,
     OUTCOMES,
@@ -18,7 +19,6 @@ from app.recognition.health.forecast import (
     make_forecast,
     measure_curve,
 )
-from app.recognition.health.verdict import Rate
 from tests.recognition.demonstrations import pool, shown_by, with_wrong_take
 from tests.recognition.held_takes import FIST, FLAT, hold
 from tests.recognition.strategies import SHAPES, circle, line, recording

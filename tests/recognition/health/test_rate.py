@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from app.evaluation.proportion import Share
-from app.recognition.health.verdict import Rate, to_plain
+from app.recognition.health.finding import Rate, to_plain
 
 
 @given(st.integers(1, 500).flatmap(lambda n: st.tuples(st.integers(0, n), st.just(n))))

@@ -7,8 +7,7 @@ import numpy as np
 from app.recognition import Gesture, Language
 from app.recognition.health.check import check_health
 from app.recognition.health.report import check_trigger, list_trigger_findings
-from app.recognition.triggers.arm_pose import ArmPose
-from app.recognition.triggers.trigger import NO_TRIGGER, SALUTE, Trigger
+from app.recognition.triggers.trigger import NO_TRIGGER, SALUTE, ArmPose, Trigger
 from tests.posed import BY_BELLY, head_pose, posed_language, posed_recording
 
 BY_HEAD = Trigger("pose", head_pose())

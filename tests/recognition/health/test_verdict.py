@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from app.recognition.health.verdict import TestedGesture, Verdict
+from app.recognition.health.finding import TestedGesture, Verdict
 
 LABELS = ("circle", "square", "line")
 

@@ -5,7 +5,7 @@ import numpy.typing as npt
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.recognition.poses.gaps import MAX_GAP_SECONDS, bridge_short_gaps, fill_all_gaps
+from app.recognition.poses.sequence import MAX_GAP_SECONDS, bridge_short_gaps, fill_all_gaps
 
 TIME = np.array([0.0, 0.1, 0.2, 0.4, 0.5])
 

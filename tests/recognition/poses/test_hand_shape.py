@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from app.recognition.errors import PoseError
-from app.recognition.poses.hand_shape import MOST_FRAMES, HandShape, choose_frames
+from app.recognition.poses.frame import MOST_FRAMES, HandShape, choose_frames
 from app.recognition.poses.sequence import FloatArray
 from tests.recognition.held_takes import FIST, FLAT, TWO
 from tests.recognition.parametric_hand import hand_xy

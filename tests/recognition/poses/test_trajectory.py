@@ -8,8 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from app.recognition import PoseError, PoseSequence
-from app.recognition.poses.gaps import MAX_GAP_SECONDS
-from app.recognition.poses.sequence import FloatArray
+from app.recognition.poses.sequence import MAX_GAP_SECONDS, FloatArray
 from app.recognition.poses.trajectory import Trajectory
 from tests.recognition.strategies import circle, in_space, known, recording, recordings
 

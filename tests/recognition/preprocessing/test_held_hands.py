@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from app.recognition.poses.hand_shape import HandShape
+from app.recognition.poses.frame import HandShape
 from app.recognition.poses.sequence import PoseSequence
 from app.recognition.poses.trajectory import Trajectory
 from app.recognition.preprocessing.holds import find_held_hands, rests_between_ends

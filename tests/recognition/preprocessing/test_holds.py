@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from app.recognition.poses.hand_shape import HandShape
+from app.recognition.poses.frame import HandShape
 from app.recognition.poses.sequence import PoseSequence
 from app.recognition.poses.trajectory import Trajectory
 from app.recognition.preprocessing.holds import Hold, describe_excess, find_holds, keep_holds

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from app.recognition.poses.hand_shape import HandShape
+from app.recognition.poses.frame import HandShape
 from app.recognition.preprocessing.moving_hands import find_moving_hands, list_moving_sides
 from tests.recognition.held_takes import FIST, FLAT, TWO
 from tests.recognition.moving_takes import circle, draw, without_hands

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from app.recognition import Gesture, Language, PoseSequence, Recognizer
-from app.recognition.gestures.tuning import Tuning
+from app.recognition.gestures.profile import Tuning
 from app.recognition.poses.landmarks import POSE_LANDMARKS
 from app.recognition.preprocessing.repair import pair_sides, repair_poses, swap_sides
 from tests.recognition.damaged_poses import with_sides_exchanged

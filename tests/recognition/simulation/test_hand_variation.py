@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from app.recognition import Gesture
-from app.recognition.poses.hand_shape import HandShape
+from app.recognition.poses.frame import HandShape
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.simulation.variation import HAND_SPREADS, Person, draw_variants, vary_hands
 from app.recognition.voters.hand_voters import HandVoter

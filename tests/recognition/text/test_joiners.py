@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from app.recognition.gestures.demonstration import check_diver
 from app.recognition.gestures.gesture import check_label
 from app.recognition.language.language import Language
-from app.recognition.text.joiners import JOINERS, is_printable, without_joiners
+from app.recognition.text.look_alikes import JOINERS, is_printable, without_joiners
 
 WORDS = st.text(st.characters(categories=["L", "M"]), min_size=1)
 CHARACTERS = st.one_of(st.characters(), st.sampled_from(f"{JOINERS} a\u0915\u094d\u0645"))

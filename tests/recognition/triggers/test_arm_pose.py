@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from app.recognition.errors import TriggerError
 from app.recognition.poses.sequence import PoseSequence
 from app.recognition.recording.salute import ENTER_SCORE
-from app.recognition.triggers.arm_pose import ARM_JOINTS, HANGING_ARMS, ArmPose, locate_arms
+from app.recognition.triggers.trigger import ARM_JOINTS, HANGING_ARMS, ArmPose, locate_arms
 from tests.posed import belly_pose, head_pose, posed_recording
 from tests.recognition.strategies import BODY, circle, recording, rest
 

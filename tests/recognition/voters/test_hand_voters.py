@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from app.recognition.poses.hand_shape import HandShape
+from app.recognition.poses.frame import HandShape
 from app.recognition.voters.hand_voters import HandVoter
 from app.recognition.voters.registry import HAND_VOTERS
 from tests.recognition.held_takes import FIST, FLAT, TWO

@@ -11,8 +11,7 @@ from app.recognition.gestures.demonstration import MAX_DIVER_LENGTH
 from app.recognition.gestures.gesture import MAX_LABEL_LENGTH, MAX_TEXT_LENGTH
 from app.recognition.language.language import MAX_AUTHOR_LENGTH, MAX_NAME_LENGTH
 from app.recognition.text.described import DESCRIBED
-from app.recognition.text.joiners import is_printable
-from app.recognition.text.look_alikes import compose
+from app.recognition.text.look_alikes import compose, is_printable
 
 MOST_SECONDS = 24 * 60 * 60
 """Largest number of seconds in a request: no clip is a day long, so more is a mistake."""

@@ -26,8 +26,7 @@ from app.api.workers.worker_messages import Failed, Finished
 from app.recognition import Recognizer
 from app.recognition.explanation.blame import find_blame
 from app.recognition.explanation.context import KnownTakes
-from app.recognition.health.finding import Finding
-from app.recognition.health.verdict import Verdict
+from app.recognition.health.finding import Finding, Verdict
 from app.store import LanguageState
 
 CANCELLED = "the check was cancelled; ask again to start it anew"

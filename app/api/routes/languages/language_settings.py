@@ -9,8 +9,12 @@ from app.api.http.schemas.values import View
 from app.api.routes.asked_revisions import CurrentRevision
 from app.api.services.running_studio import computed_briefly
 from app.recognition.features.trajectory_image import SIMPLIFICATION
-from app.recognition.gestures.profile import DEFAULT_PROFILE, PROFILES, ProfileName
-from app.recognition.gestures.tuning import MAX_SIMPLIFICATION
+from app.recognition.gestures.profile import (
+    DEFAULT_PROFILE,
+    MAX_SIMPLIFICATION,
+    PROFILES,
+    ProfileName,
+)
 from app.recognition.language.file_schema import TuningEntry, tuning_to_entry
 
 router = APIRouter(prefix="/languages", tags=["languages"])

@@ -16,8 +16,7 @@ from app.api.services.running_studio import Studio, edited
 from app.recognition import Language
 from app.recognition.errors import TriggerError
 from app.recognition.gestures.gesture import MAX_LABEL_LENGTH
-from app.recognition.triggers.arm_pose import ArmPose
-from app.recognition.triggers.trigger import Trigger, TriggerKind
+from app.recognition.triggers.trigger import ArmPose, Trigger, TriggerKind
 
 
 class HeldPose(Body):

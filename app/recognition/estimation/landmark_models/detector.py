@@ -12,8 +12,12 @@ import numpy as np
 import numpy.typing as npt
 
 from app.recognition.estimation.landmark_models.onnx_session import ModelSession, Signature
-from app.recognition.estimation.landmark_models.region import ZERO_BORDER, Region
-from app.recognition.estimation.landmark_models.suppression import Detection, blend_overlapping
+from app.recognition.estimation.landmark_models.region import (
+    ZERO_BORDER,
+    Detection,
+    Region,
+    blend_overlapping,
+)
 from app.recognition.poses.frame import Image
 from app.recognition.poses.sequence import FloatArray
 

@@ -20,8 +20,7 @@ import numpy.typing as npt
 from app.recognition.errors import ModelError
 from app.recognition.estimation.estimator import check_image
 from app.recognition.estimation.landmark_models.hand_tracker import MOST_HANDS
-from app.recognition.estimation.landmark_models.onnx_session import Provider
-from app.recognition.estimation.landmark_models.planar_model import Letterbox, PlanarModel
+from app.recognition.estimation.landmark_models.onnx_session import Letterbox, PlanarModel, Provider
 from app.recognition.estimation.landmark_models.region import ZERO_BORDER, Region
 from app.recognition.poses.frame import SIDES, Body, Hand, Image, Side
 from app.recognition.poses.landmarks import HAND_LANDMARKS, POSE_LANDMARKS
@@ -53,7 +52,7 @@ pixels of the input, a finger fifteen wide."""
 
 
 class DiverHands:
-    """Finds hands in a whole image; a `HandFinder`.
+    """Finds hands in a whole image.
 
     Parameters
     ----------

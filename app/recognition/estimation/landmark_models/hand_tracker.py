@@ -23,16 +23,14 @@ from app.recognition.estimation.landmark_models.arms import (
     wrist_distance,
 )
 from app.recognition.estimation.landmark_models.detector import Detector
-from app.recognition.estimation.landmark_models.hand_finder import (
-    HandFinder,
-    HandPlace,
-    parts_of,
-)
 from app.recognition.estimation.landmark_models.hand_model import (
     GLOVED_SURE,
+    HandFinder,
     HandModel,
+    HandPlace,
     SeenHand,
     find_duplicates,
+    parts_of,
 )
 from app.recognition.estimation.landmark_models.region import Region, region_of_palm
 from app.recognition.poses.frame import SIDES, Body, FrameLandmarks, Image, Side

@@ -7,8 +7,7 @@ from typing import Any
 from osg_interfaces.msg import BodyKeypoints
 
 from app.recognition.errors import OsgError
-from app.recognition.estimation.factory import ComposedEstimator, TrackedHands
-from app.recognition.estimation.onnx_estimator import hand_tracker
+from app.recognition.estimation.factory import ComposedEstimator, TrackedHands, hand_tracker
 from app.recognition.estimation.water import WaterSight
 from app.recognition.poses.frame import Body, FrameLandmarks, Image
 from app.recognition.poses.landmarks import POSE_LANDMARKS

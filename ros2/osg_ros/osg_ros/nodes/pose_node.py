@@ -5,8 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from app.recognition.errors import OsgError
-from app.recognition.estimation.factory import ComposedEstimator
-from app.recognition.estimation.onnx_estimator import body_tracker
+from app.recognition.estimation.factory import ComposedEstimator, body_tracker
 from app.recognition.estimation.water import WaterSight
 from app.recognition.poses.landmarks import POSE_LANDMARKS
 from osg_ros.estimation_settings import PROVIDER, THREADS, WATER

@@ -7,10 +7,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from app.recognition.estimation.factory import OnnxPoseEstimator
 from app.recognition.estimation.landmark_models.body import SEARCH_PAUSE, STILL_SECONDS
 from app.recognition.estimation.landmark_models.body_model import BodyModel, SeenBody
 from app.recognition.estimation.landmark_models.region import Region
-from app.recognition.estimation.onnx_estimator import OnnxPoseEstimator
 from app.recognition.poses.frame import Image
 from tests.recognition.estimation.clip_frames import clip_frames
 

@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from app.recognition.estimation.factory import OnnxPoseEstimator
 from app.recognition.estimation.landmark_models.body_model import (
     MARGIN,
     POSE_SIGNATURE,
@@ -16,7 +17,6 @@ from app.recognition.estimation.landmark_models.body_model import (
 )
 from app.recognition.estimation.landmark_models.detector import PERSON_LAYOUT, Detector
 from app.recognition.estimation.landmark_models.onnx_session import ModelSession
-from app.recognition.estimation.onnx_estimator import OnnxPoseEstimator
 from app.recognition.models.storage import model_path
 from app.recognition.poses.frame import Image
 from app.recognition.poses.landmarks import POSE_LANDMARKS

@@ -11,8 +11,9 @@ import cv2
 import numpy as np
 import pytest
 
+from app.recognition.estimation.factory import OnnxPoseEstimator
 from app.recognition.estimation.landmark_models.detector import PALM_LAYOUT, Detector
-from app.recognition.estimation.landmark_models.hand_finder import (
+from app.recognition.estimation.landmark_models.hand_model import (
     LARGEST,
     HandFinder,
     HandPlace,
@@ -20,7 +21,6 @@ from app.recognition.estimation.landmark_models.hand_finder import (
 )
 from app.recognition.estimation.landmark_models.onnx_session import ModelSession
 from app.recognition.estimation.landmark_models.region import Region
-from app.recognition.estimation.onnx_estimator import OnnxPoseEstimator
 from app.recognition.estimation.water import WaterSight
 from app.recognition.models.storage import finder_path
 from app.recognition.poses.frame import Body, Hand, Image
@@ -107,7 +107,7 @@ def test_fingers_of_gloved_hands_are_seen_and_followed(
 def test_without_the_model_of_gloved_hands_their_places_are_seen(
     installed_models: None, diver: Image, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("app.recognition.estimation.onnx_estimator.gloves_path", lambda: None)
+    monkeypatch.setattr("app.recognition.estimation.factory.gloves_path", lambda: None)
     with closing(OnnxPoseEstimator(threads=1)) as estimator:
         sight = WaterSight(estimator)
         found = sight.estimate(diver, 0.0)

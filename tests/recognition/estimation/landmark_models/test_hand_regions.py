@@ -10,10 +10,10 @@ from hypothesis import strategies as st
 
 from app.recognition.estimation.landmark_models.region import (
     PALM_TURN,
+    Detection,
     region_of_hand,
     region_of_palm,
 )
-from app.recognition.estimation.landmark_models.suppression import Detection
 from app.recognition.poses.sequence import FloatArray
 from tests.recognition.estimation.drawn_hand import flat_hand, turned
 from tests.recognition.estimation.landmark_models.crops import to_crop

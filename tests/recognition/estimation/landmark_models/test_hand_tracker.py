@@ -12,11 +12,14 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from app.recognition.estimation.factory import OnnxPoseEstimator, hand_tracker
 from app.recognition.estimation.landmark_models.arms import wrist_distance
-from app.recognition.estimation.landmark_models.hand_finder import HandPlace
-from app.recognition.estimation.landmark_models.hand_model import SeenHand, find_duplicates
+from app.recognition.estimation.landmark_models.hand_model import (
+    HandPlace,
+    SeenHand,
+    find_duplicates,
+)
 from app.recognition.estimation.landmark_models.region import KNUCKLES, WRIST, region_of_hand
-from app.recognition.estimation.onnx_estimator import OnnxPoseEstimator, hand_tracker
 from app.recognition.poses.frame import SIDES, Body, FrameLandmarks, Hand, Image, Side
 from app.recognition.poses.landmarks import POSE_LANDMARKS
 from app.recognition.poses.sequence import FloatArray

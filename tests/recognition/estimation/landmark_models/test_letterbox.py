@@ -4,7 +4,7 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.recognition.estimation.landmark_models.planar_model import BAR, Letterbox
+from app.recognition.estimation.landmark_models.onnx_session import BAR, Letterbox
 from app.recognition.poses.sequence import FloatArray
 from tests.recognition.estimation.marker_models import draw_markers
 

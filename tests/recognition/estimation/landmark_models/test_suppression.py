@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.recognition.estimation.landmark_models.suppression import (
+from app.recognition.estimation.landmark_models.region import (
     blend_overlapping,
     measure_overlaps,
     select_best,
