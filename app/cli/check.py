@@ -67,7 +67,7 @@ def _list_table_faults(file: Path, language: Language) -> list[str]:
     from app.robot.mavlink.table import read_vehicle_table
 
     table = read_vehicle_table(file)
-    return [fault for _, fault in table.list_faults(language, spots=language.trigger.spots)]
+    return [fault for _, fault in table.list_faults(language)]
 
 
 def _show_choice(language: Language, keep: int, *, as_json: bool) -> None:

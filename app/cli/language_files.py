@@ -61,12 +61,12 @@ def list_answers(vehicle: Path) -> list[tuple[int, str]]:
 
     """
     with explain_missing_package("--vehicle", "mavlink"):  # reads TOML before Python 3.11
-        from app.robot.commands.answers import Answer
+        from app.robot.commands.replies import Reply
         from app.robot.mavlink.table import read_vehicle_table
     answers = read_vehicle_table(vehicle).answers
     if answers is None:
         raise OsgError(f"{vehicle} has no [answers]; leave --vehicle out, or add them")
-    return sorted((answers.count_pulses(answer), answer.words) for answer in Answer)
+    return sorted((answers.count_pulses(reply), reply.words) for reply in Reply)
 
 
 def samples(

@@ -5,7 +5,6 @@ from __future__ import annotations
 import re
 from dataclasses import replace
 from pathlib import Path
-from typing import get_args
 
 from typing_extensions import Unpack
 
@@ -22,7 +21,7 @@ from app.clip_sources.source import (
     UnsupportedFile,
 )
 from app.keypoint_files import (
-    Ending,
+    ENDINGS,
     ReadKeypoints,
     is_keypoint_file,
     is_openpose_archive,
@@ -64,7 +63,7 @@ class KeypointFileSource(ClipSource):
     name = "keypoints"
     noun = "a keypoint file"
     formats = "keypoints (CSV, JSON, SLEAP, .pose, or OpenPose's folder as zip)"
-    endings = get_args(Ending)
+    endings = ENDINGS
     folder = "frames of OpenPose (*_keypoints.json)"
     has_pictures = False
     probe_seconds = 120.0

@@ -15,7 +15,13 @@ from typing import Final
 import numpy as np
 
 from app.keypoint_files.keypoint_people import Person, table_of_people
-from app.keypoint_files.keypoint_table import KeypointOptions, KeypointTable, Times
+from app.keypoint_files.keypoint_table import (
+    KeypointFormat,
+    KeypointOptions,
+    KeypointTable,
+    Times,
+    has_no_zero,
+)
 from app.recognition.errors import KeypointFileError
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.skeletons import translate_landmark
@@ -34,10 +40,10 @@ ONLY: Final = "single"
 """Name of the only individual in a file without individuals."""
 
 
-def is_deeplabcut(path: Path) -> bool:
-    """Return whether a CSV file begins as DeepLabCut's files do."""
-    with path.open("rb") as file:
-        return file.read(9).removeprefix(codecs.BOM_UTF8).lower().startswith(b"scorer")
+def begins_as_deeplabcut(head: bytes) -> bool:
+    """Return whether a file begins as DeepLabCut's files do."""
+    word = head.removeprefix(codecs.BOM_UTF8)[:6].lower()
+    return word == b"scorer" and has_no_zero(head)
 
 
 def read_deeplabcut(path: Path, options: KeypointOptions, limits: VideoLimits) -> KeypointTable:
@@ -111,3 +117,8 @@ def _numbers(line: list[str], headings: dict[str, list[str]], row: int, path: Pa
 
 def _is_person(names: list[str], options: KeypointOptions) -> bool:
     return any(name in options.landmarks or translate_landmark(name) for name in names)
+
+
+DEEPLABCUT: Final = KeypointFormat(
+    (".csv", ".tsv"), begins_as_deeplabcut, read_deeplabcut, is_text=True
+)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from types import MappingProxyType
@@ -15,6 +15,7 @@ from app.recognition.errors import KeypointFileError, RoundedTimesError
 from app.recognition.poses.frame import Hand, Side
 from app.recognition.poses.landmarks import HAND_LANDMARKS
 from app.recognition.poses.sequence import FloatArray
+from app.recognition.recording.video_limits import VideoLimits
 
 LARGEST_COORDINATE = 1e6
 """Largest coordinate of a keypoint in pixels or millimetres; no camera has as many."""
@@ -317,3 +318,36 @@ def hands_of(points: FloatArray, sides: Sequence[Side]) -> tuple[tuple[Hand, ...
         for row in range(len(groups))
     )
     return tuple(tuple(sorted(hands, key=lambda hand: -hand.size)) for hands in frames)
+
+
+@dataclass(frozen=True)
+class KeypointFormat:
+    """A format of keypoint files; `app.keypoint_files.registry` lists all.
+
+    Attributes
+    ----------
+    endings
+        Endings of its files, in lower case; without its name a file gets the first one.
+    begins
+        Returns whether the first bytes of a file may be of this format.
+    read
+        Reads a file; see `app.keypoint_files.read_keypoints`.
+    is_text
+        Whether it has no mark of its kind, so that the name must have one of the endings too.
+
+    """
+
+    endings: tuple[str, ...]
+    begins: Callable[[bytes], bool]
+    read: Callable[[Path, KeypointOptions, VideoLimits], KeypointTable]
+    is_text: bool = False
+
+    def recognises(self, head: bytes, name: str) -> bool:
+        """Return whether a file with this name that begins with `head` is of this format."""
+        is_named = not self.is_text or name.lower().endswith(self.endings)
+        return is_named and self.begins(head)
+
+
+def has_no_zero(head: bytes) -> bool:
+    """Return whether the beginning of a file may be text: it has no zero bytes."""
+    return b"\0" not in head

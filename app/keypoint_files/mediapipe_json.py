@@ -36,9 +36,11 @@ from app.keypoint_files.keypoint_people import (
 from app.keypoint_files.keypoint_table import (
     MALFORMED,
     Facts,
+    KeypointFormat,
     KeypointOptions,
     KeypointTable,
     Times,
+    has_no_zero,
 )
 from app.keypoint_files.mediapipe_table import times_of
 from app.recognition.errors import KeypointFileError, OsgError
@@ -306,3 +308,6 @@ def _times(frames: list[Any]) -> Times:
     if place is None:
         return Times(np.arange(len(frames), dtype=np.float64), counted=True)
     return times_of(np.array([float(frame[keys[place]]) for frame in frames]), unit)
+
+
+MEDIAPIPE_JSON: Final = KeypointFormat((".json",), has_no_zero, read_mediapipe_json, is_text=True)

@@ -29,10 +29,12 @@ from app.keypoint_files.keypoint_people import name_points, table_of
 from app.keypoint_files.keypoint_table import (
     MOST_PEOPLE,
     Facts,
+    KeypointFormat,
     KeypointOptions,
     KeypointTable,
     Times,
     hands_of,
+    has_no_zero,
     mask_unseen,
     visibility_of,
 )
@@ -271,3 +273,12 @@ def _number(line: Sequence[str], place: int | None, row: int, path: Path) -> flo
 
 def _shown(headings: Sequence[str]) -> str:
     return ", ".join(heading[:20] for heading in headings[:6]) or "none"
+
+
+MEDIAPIPE_TABLE: Final = KeypointFormat(
+    (".csv", ".tsv"),
+    lambda head: has_no_zero(head) or is_utf16(head),
+    read_mediapipe_table,
+    is_text=True,
+)
+"""A spreadsheet may write UTF-16, whose text has zero bytes."""

@@ -14,7 +14,13 @@ from typing import Any, Final
 import numpy as np
 
 from app.keypoint_files.keypoint_people import Person, frame_number, table_of_people
-from app.keypoint_files.keypoint_table import MALFORMED, KeypointOptions, KeypointTable, Times
+from app.keypoint_files.keypoint_table import (
+    MALFORMED,
+    KeypointFormat,
+    KeypointOptions,
+    KeypointTable,
+    Times,
+)
 from app.recognition.errors import KeypointFileError
 from app.recognition.poses.frame import SIDES, Side
 from app.recognition.poses.landmarks import HAND_LANDMARKS
@@ -109,3 +115,9 @@ def _points(entry: Any, keys: tuple[str, ...], file: Path) -> FloatArray | None:
             f"{file} has {keys[0]} of {numbers.shape} values, expected x, y, confidence in a row"
         )
     return numbers.reshape(-1, 3)
+
+
+OPENPOSE: Final = KeypointFormat(
+    (".zip",), lambda head: head.startswith(b"PK\x03\x04"), read_openpose
+)
+"""An archive is unpacked, see `app.keypoint_files.stage`: a folder is read."""

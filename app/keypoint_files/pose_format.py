@@ -20,6 +20,7 @@ from app.keypoint_files.keypoint_table import (
     MALFORMED,
     MOST_PEOPLE,
     Facts,
+    KeypointFormat,
     KeypointOptions,
     KeypointTable,
     Times,
@@ -141,3 +142,8 @@ def _find_hands(components: list[_Component]) -> dict[Side, _Component]:
         and side in each.name.lower()
         and len(each.names) == len(HAND_LANDMARKS)
     }
+
+
+POSE_FORMAT: Final = KeypointFormat(
+    (".pose",), lambda head: head[:4] in BEGINNINGS, read_pose_format
+)

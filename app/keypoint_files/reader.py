@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from app.keypoint_files.keypoint_table import KeypointOptions, KeypointTable, Times
-from app.keypoint_files.registry import find_reader
+from app.keypoint_files.registry import find_format
 from app.recognition.errors import (
     FrameRateError,
     FrameSizeError,
@@ -121,7 +121,7 @@ def read_keypoints(
 
 def _table(path: Path, options: KeypointOptions, limits: VideoLimits) -> KeypointTable:
     try:
-        table = find_reader(path)(path, options, limits)
+        table = find_format(path).read(path, options, limits)
     except (UnicodeDecodeError, csv.Error) as error:
         raise KeypointFileError(f"{path} is no text table ({error}); export it again") from error
     table = table.without_far(options.frame_size or table.frame_size)

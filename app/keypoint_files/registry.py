@@ -1,45 +1,50 @@
-"""Registry of keypoint file formats: a new format is a module with a reader and a line here."""
+"""Registry of keypoint file formats: a new one is a module with a `KeypointFormat`, named here."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
 from pathlib import Path
-from typing import Final, Literal, get_args
+from typing import Annotated, Final
 
-from app.keypoint_files.deeplabcut import is_deeplabcut, read_deeplabcut
-from app.keypoint_files.keypoint_table import KeypointOptions, KeypointTable
-from app.keypoint_files.mediapipe_json import read_mediapipe_json
-from app.keypoint_files.mediapipe_table import read_mediapipe_table
-from app.keypoint_files.openpose import is_openpose, read_openpose
-from app.keypoint_files.pose_format import BEGINNINGS, read_pose_format
-from app.keypoint_files.sleap import read_sleap
+from pydantic import AfterValidator
+
+from app.keypoint_files.deeplabcut import DEEPLABCUT
+from app.keypoint_files.keypoint_table import KeypointFormat
+from app.keypoint_files.mediapipe_json import MEDIAPIPE_JSON
+from app.keypoint_files.mediapipe_table import MEDIAPIPE_TABLE
+from app.keypoint_files.openpose import OPENPOSE, is_openpose
+from app.keypoint_files.pose_format import POSE_FORMAT
+from app.keypoint_files.sleap import SLEAP
 from app.recognition.errors import KeypointFileError
 from app.recognition.recording.file_kinds import HEAD_BYTES, find_file_kind
-from app.recognition.recording.video_limits import VideoLimits
-from app.recognition.text.strict_json import is_utf16
 
-Reader = Callable[[Path, KeypointOptions, VideoLimits], KeypointTable]
+FORMATS: Final = (DEEPLABCUT, MEDIAPIPE_TABLE, MEDIAPIPE_JSON, SLEAP, POSE_FORMAT)
+"""Formats of single files. Of several with one ending the first that recognises a file reads it;
+the last of them says what is wrong with a file that none recognises."""
 
-READERS: Mapping[str, Reader] = {
-    ".csv": read_mediapipe_table,
-    ".tsv": read_mediapipe_table,
-    ".json": read_mediapipe_json,
-    ".slp": read_sleap,
-    ".h5": read_sleap,
-    ".hdf5": read_sleap,
-    ".pose": read_pose_format,
-}
-"""Readers by the file's ending. DeepLabCut's CSV is recognised by its first word, OpenPose by its
-folder."""
+FILE_ENDINGS: Final = tuple(dict.fromkeys(each for form in FORMATS for each in form.endings))
+
+ENDINGS: Final = (*FILE_ENDINGS, *OPENPOSE.endings)
+"""Endings of files, and of the archive that holds a folder of OpenPose."""
+
+
+def require_ending(ending: str) -> str:
+    """Return an ending if there is such a format; otherwise raise `ValueError`."""
+    if ending not in ENDINGS:
+        raise ValueError(f"Input should be one of {', '.join(ENDINGS)}")
+    return ending
+
+
+Ending = Annotated[str, AfterValidator(require_ending)]
+"""Ending by which `app.keypoint_files.read_keypoints` chooses the format."""
 
 
 def is_keypoint_file(path: Path) -> bool:
     """Return whether a file or folder is read as keypoints and not as a video."""
-    return is_openpose(path) if path.is_dir() else path.suffix.lower() in READERS
+    return is_openpose(path) if path.is_dir() else path.suffix.lower() in FILE_ENDINGS
 
 
-def find_reader(path: Path) -> Reader:
-    """Return the reader of a file's or folder's format.
+def find_format(path: Path) -> KeypointFormat:
+    """Return a file's or folder's format.
 
     Raises
     ------
@@ -48,45 +53,26 @@ def find_reader(path: Path) -> Reader:
 
     """
     if path.is_dir():
-        return read_openpose
+        return OPENPOSE
     if not path.is_file():
         raise KeypointFileError(f"{path} is not a file; give the path of a keypoint file")
-    reader = READERS.get(path.suffix.lower())
-    if reader is None:
+    named = [each for each in FORMATS if path.suffix.lower() in each.endings]
+    if not named:
         raise KeypointFileError(
-            f"{path.name} is no keypoint file by its ending; there are: {', '.join(READERS)}, and "
-            f"folders of OpenPose"
+            f"{path.name} is no keypoint file by its ending; there are: "
+            f"{', '.join(FILE_ENDINGS)}, and folders of OpenPose"
         )
     with path.open("rb") as file:
-        kind = find_file_kind(file.read(HEAD_BYTES))
-    if kind is not None:
+        head = file.read(HEAD_BYTES)
+    if (kind := find_file_kind(head)) is not None:
         raise KeypointFileError(f"{path} is {kind.name} and no keypoint file; {kind.remedy}")
-    if reader is read_mediapipe_table and is_deeplabcut(path):
-        return read_deeplabcut
-    return reader
+    return next((each for each in named if each.recognises(head, path.name)), named[-1])
 
 
-Ending = Literal[".csv", ".tsv", ".json", ".slp", ".h5", ".pose", ".zip"]
-"""Endings by which `app.keypoint_files.read_keypoints` chooses the reader; an archive holds a
-folder of OpenPose."""
-
-_HDF5: Final = b"\x89HDF\r\n\x1a\n"
-_ZIP: Final = b"PK\x03\x04"
-
-
-def keypoint_ending(head: bytes, name: str) -> Ending | None:
-    """Return the ending by which a file that begins with `head` is read; None without keypoints.
-
-    Text has no mark of its kind, so its name decides; a file with zero bytes is no text, unless it
-    is a table in UTF-16.
-    """
-    if head.startswith(_ZIP):
-        return ".zip"
-    if head[:4] in BEGINNINGS:
-        return ".pose"
-    lower = name.lower()
-    if head.startswith(_HDF5):
-        return ".slp" if lower.endswith(".slp") else ".h5"
-    named = next((ending for ending in get_args(Ending) if lower.endswith(ending)), None)
-    is_text = b"\0" not in head or (named in (".csv", ".tsv") and is_utf16(head))
-    return named if named in (".csv", ".tsv", ".json") and is_text else None
+def keypoint_ending(head: bytes, name: str) -> str | None:
+    """Return the ending by which a file that begins with `head` is read; None without keypoints."""
+    for each in (OPENPOSE, *FORMATS):
+        if each.recognises(head, name):
+            named = (ending for ending in each.endings if name.lower().endswith(ending))
+            return next(named, each.endings[0])
+    return None

@@ -6,7 +6,7 @@ import importlib
 import json
 import warnings
 from pathlib import Path
-from typing import Any
+from typing import Any, Final
 
 import numpy as np
 
@@ -15,6 +15,7 @@ from app.keypoint_files.keypoint_table import (
     MALFORMED,
     MOST_PEOPLE,
     Facts,
+    KeypointFormat,
     KeypointOptions,
     KeypointTable,
     Times,
@@ -184,3 +185,9 @@ def _size(labels: Any) -> tuple[int, int] | None:
 def _tell_track(count: int, name: str) -> tuple[str, ...]:
     followed = f"of {count} people track {name!r} stands out most and is followed"
     return (followed,) if count > 1 else ()
+
+
+SLEAP: Final = KeypointFormat(
+    (".h5", ".slp", ".hdf5"), lambda head: head.startswith(b"\x89HDF\r\n\x1a\n"), read_sleap
+)
+"""Both of SLEAP's kinds of files are HDF5."""

@@ -19,7 +19,7 @@ from app.recognition import Recognition
 from app.recognition.language.file import short_code
 from app.recognition.phrases.parser import PhraseEvent
 from app.recognition.recording.segmentation import TakeState
-from app.robot.commands.answers import Answer
+from app.robot.commands.replies import Reply
 
 JSON_TYPE: Final = "json_type"
 """Metadata key of a field whose type in JSON is another one; None: the field is not in JSON."""
@@ -185,7 +185,7 @@ class VehicleReported(Event):
 class AnswerGiven(Event):
     """The robot answers the diver, by the pulses that the vehicle table lets him see."""
 
-    answer: Answer
+    answer: Reply
     """listening: a gesture, or the next one of a message, is awaited. repeat: the same again
     confirms. one_of_two: showing the one that was meant confirms it. done: the vehicle has done
     it, or it is cancelled. refused: not understood, refused or failed."""

@@ -9,12 +9,11 @@ from contextlib import AbstractContextManager, contextmanager, suppress
 from dataclasses import dataclass
 from datetime import datetime
 from pathlib import Path
+from typing import Final
 
-from sqlalchemy import ColumnElement, exists, or_
+from sqlalchemy import exists, or_
 from sqlalchemy.exc import IntegrityError
-from sqlalchemy.orm import aliased
 from sqlmodel import Session, col, func, select
-from sqlmodel.sql.expression import SelectOfScalar
 
 from app.store.atomic_files import PARTIAL_SUFFIX, publish_copy, sync_directory
 from app.store.clip_folder import ClipFolder
@@ -165,6 +164,7 @@ class ClipStore(DatabaseStore):
         target = self.place(clip.id, clip.source)
         target.parent.mkdir(exist_ok=True)
         job = Job(clip_id=clip.id, client=client)
+        clip.job_id = job.id
         if clip.needs_topic:
             job.status, job.finished = JobStatus.FAILED.value, now()
             job.error_code = TOPIC_NEEDED
@@ -201,17 +201,16 @@ class ClipStore(DatabaseStore):
 
         """
         with self._database.reading() as session:
-            clip = _load(session, clip_id)
-            return ClipWithJob(clip, _newest_jobs(col(Clip.id) == clip_id, session)[clip_id])
+            found = session.exec(_WITH_JOB.where(Clip.id == clip_id, _KEPT)).first()
+            if found is None:
+                raise NotFound(f"there is no clip {clip_id!r}")
+            return ClipWithJob(*found)
 
     def all(self) -> list[ClipWithJob]:
         """Return the clips that are not deleted, newest first."""
         with self._database.reading() as session:
-            query = select(Clip).where(col(Clip.deleted).is_(None))
-            clips = session.exec(query.order_by(col(Clip.created).desc(), col(Clip.id))).all()
-            # Not selected by id: a statement can have at most 32 766 values.
-            jobs = _newest_jobs(col(Clip.deleted).is_(None), session)
-            return [ClipWithJob(clip, jobs[clip.id]) for clip in clips]
+            query = _WITH_JOB.where(_KEPT).order_by(*_NEWEST_FIRST)
+            return [ClipWithJob(*found) for found in session.exec(query)]
 
     def page(self, query: ClipQuery) -> ClipPage:
         """Return a page of the clips that are not deleted, newest first.
@@ -225,7 +224,7 @@ class ClipStore(DatabaseStore):
 
         """
         with self._database.reading() as session:
-            wanted = select(Clip).where(col(Clip.deleted).is_(None))
+            wanted = _WITH_JOB.where(_KEPT)
             if query.after is not None:
                 if (last := session.get(Clip, query.after)) is None:
                     raise NotFound(f"there is no clip {query.after!r} to go on after")
@@ -237,29 +236,23 @@ class ClipStore(DatabaseStore):
             if query.name:
                 wanted = wanted.where(col(Clip.name).icontains(query.name, autoescape=True))
             if query.statuses:
-                wanted = wanted.where(col(Clip.id).in_(_standing(query.statuses)))
+                wanted = wanted.where(col(Job.status).in_([each.value for each in query.statuses]))
             if query.ids:
                 wanted = wanted.where(col(Clip.id).in_(query.ids))
-            wanted = wanted.order_by(col(Clip.created).desc(), col(Clip.id))
-            found = session.exec(wanted.limit(query.limit + 1)).all()
-            clips = found[: query.limit]
-            jobs = _newest_jobs(col(Clip.id).in_([clip.id for clip in clips]), session)
-            return ClipPage(
-                [ClipWithJob(clip, jobs[clip.id]) for clip in clips], len(found) > len(clips)
-            )
+            wanted = wanted.order_by(*_NEWEST_FIRST)
+            found = [ClipWithJob(*each) for each in session.exec(wanted.limit(query.limit + 1))]
+            return ClipPage(found[: query.limit], len(found) > query.limit)
 
     def count(self) -> int:
         """Return the number of clips that are not deleted."""
         with self._database.reading() as session:
-            return session.exec(select(func.count()).where(col(Clip.deleted).is_(None))).one()
+            return session.exec(select(func.count()).where(_KEPT)).one()
 
     def by_idempotency_key(self, key: str) -> ClipWithJob | None:
         """Return the clip of the upload with this key, even if it has been deleted."""
         with self._database.reading() as session:
-            clip = session.exec(select(Clip).where(Clip.idempotency_key == key)).first()
-            if clip is None:
-                return None
-            return ClipWithJob(clip, _newest_jobs(col(Clip.id) == clip.id, session)[clip.id])
+            found = session.exec(_WITH_JOB.where(Clip.idempotency_key == key)).first()
+            return None if found is None else ClipWithJob(*found)
 
     def delete(self, clip_id: str) -> None:
         """Hide a clip; its files stay until `purge`.
@@ -473,21 +466,9 @@ def _load(session: Session, clip_id: str) -> Clip:
     return clip
 
 
-def _standing(statuses: tuple[JobStatus, ...]) -> SelectOfScalar[str]:
-    """Select the ids of the clips whose newest job has one of the `statuses`."""
-    newer = aliased(Job)
-    return (
-        select(Job.clip_id)
-        .where(col(Job.status).in_([status.value for status in statuses]))
-        .where(
-            ~exists().where(
-                col(newer.clip_id) == col(Job.clip_id), col(newer.created) > col(Job.created)
-            )
-        )
-    )
+_WITH_JOB: Final = select(Clip, Job).join(Job, col(Job.id) == col(Clip.job_id))
+"""Selects clips with their newest jobs."""
 
+_KEPT: Final = col(Clip.deleted).is_(None)
 
-def _newest_jobs(which: ColumnElement[bool], session: Session) -> dict[str, Job]:
-    """Return the newest job of each clip for which `which` is true."""
-    query = select(Job).join(Clip).where(which).order_by(col(Job.created))
-    return {job.clip_id: job for job in session.exec(query)}
+_NEWEST_FIRST: Final = (col(Clip.created).desc(), col(Clip.id))

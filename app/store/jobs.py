@@ -179,6 +179,8 @@ class JobStore(DatabaseStore):
                 return None
             job = Job(clip_id=clip_id, client=client)
             session.add(job)
+            if clip := session.get(Clip, clip_id):
+                clip.job_id = job.id
             return job
 
     def finish(

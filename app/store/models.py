@@ -132,6 +132,8 @@ class Clip(_OwnedRow, table=True):
     options: dict[str, Any] | None = Field(default=None, sa_type=Json)
     """How the file is read (`app.clip_sources.ReadOptions`)."""
     idempotency_key: str | None = Field(default=None, max_length=255, unique=True)
+    job_id: str = Field(default="", max_length=32, sa_column_kwargs={"server_default": ""})
+    """Its newest job; no foreign key, because jobs refer to clips."""
     created: datetime = Field(default_factory=now, sa_type=UtcDateTime, index=True)
     deleted: datetime | None = Field(default=None, sa_type=UtcDateTime)
 

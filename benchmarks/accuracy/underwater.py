@@ -28,7 +28,7 @@ from app.recognition.poses.frame import Image
 from app.recognition.recording.salute import ENTER_SCORE
 from app.recognition.recording.video import read_frames
 from app.resources import samples_dir
-from app.robot.commands.answers import PULSE_SECONDS
+from app.robot.commands.replies import PULSE_SECONDS
 from benchmarks.accuracy.salute import CHANGING_PHASES
 from languages.render.encode import encode
 

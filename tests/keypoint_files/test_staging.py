@@ -6,8 +6,14 @@ import zipfile
 from pathlib import Path
 
 import pytest
+from pydantic import ValidationError
 
+from app.clip_sources.source import ReadOptions
 from app.keypoint_files import keypoint_ending, stage
+from app.keypoint_files.deeplabcut import DEEPLABCUT
+from app.keypoint_files.keypoint_table import KeypointFormat
+from app.keypoint_files.mediapipe_table import MEDIAPIPE_TABLE
+from app.keypoint_files.registry import find_format
 from app.recognition.errors import KeypointFileError, VideoError
 from app.recognition.recording.video_limits import VideoLimits
 
@@ -25,6 +31,7 @@ def archive_of(path: Path, **entries: str) -> Path:
         (b"PK\x03\x04", "dive.csv", ".zip"),
         (b"\x89HDF\r\n\x1a\n", "dive.SLP", ".slp"),
         (b"\x89HDF\r\n\x1a\n", "dive", ".h5"),
+        (b"\x89HDF\r\n\x1a\n", "dive.hdf5", ".hdf5"),
         (b"frame,x0", "Dive.CSV", ".csv"),
         (b"[]", "dive.json", ".json"),
         (b"[]", "dive.slp", None),
@@ -74,3 +81,26 @@ def test_damaged_archives_and_those_of_too_many_frames_are_refused(tmp_path: Pat
     path.write_bytes(path.read_bytes()[:-30])
     with pytest.raises(KeypointFileError, match="damaged"), stage(path, ".zip"):
         pytest.fail("it was unpacked")
+
+
+@pytest.mark.parametrize(
+    ("head", "name", "form"),
+    [
+        (b"scorer,DLC,DLC", "dive.csv", DEEPLABCUT),
+        (b"\xef\xbb\xbfScorer\tDLC", "dive.tsv", DEEPLABCUT),
+        (b"frame,x0", "dive.csv", MEDIAPIPE_TABLE),
+        (b"{}", "dive.csv", MEDIAPIPE_TABLE),
+    ],
+)
+def test_of_two_formats_with_one_ending_the_one_that_recognises_the_file_reads_it(
+    tmp_path: Path, head: bytes, name: str, form: KeypointFormat
+) -> None:
+    file = tmp_path / name
+    file.write_bytes(head)
+    assert find_format(file) is form
+
+
+def test_an_ending_without_a_format_is_refused() -> None:
+    assert ReadOptions(ending=".hdf5").ending == ".hdf5"
+    with pytest.raises(ValidationError, match=r"one of \.csv, "):
+        ReadOptions(ending=".txt")

@@ -80,7 +80,7 @@ def test_the_image_is_small_and_reads_every_kind_of_clip(container: str) -> None
 
 
 def test_the_image_speaks_mavlink_and_writes_nowhere_but_its_data(container: str) -> None:
-    speak = "from app.robot.mavlink import bridge; print(bridge.build_heartbeat().get_type())"
+    speak = "from app.robot.mavlink import talk; print(talk.build_heartbeat().get_type())"
     python = "/opt/osg/bin/python3"
     assert buildah("run", container, "--", python, "-c", speak) == "HEARTBEAT"
     written = "touch /data/a && ! touch /opt/osg/a 2>/dev/null && ! touch /etc/a 2>/dev/null"

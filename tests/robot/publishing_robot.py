@@ -19,7 +19,7 @@ from app.robot import (
     TakeRejected,
     TriggerListener,
 )
-from app.robot.commands.answers import Answer
+from app.robot.commands.replies import Reply
 from app.robot.publishing.publisher import open_publisher
 from app.robot.runtime import build_language_changed
 from tests.api.recordings import recording_of
@@ -48,7 +48,7 @@ def list_round_events() -> list[Event]:
             for event in between
             if isinstance(event, TakeRejected)
         ),
-        AnswerGiven(LATER, Answer.one_of_two, 3, "circle or line? show it again"),
+        AnswerGiven(LATER, Reply.one_of_two, 3, "circle or line? show it again"),
     ]
 
 

@@ -34,7 +34,7 @@ from app.robot import (
     TriggerListener,
     VehicleReported,
 )
-from app.robot.commands.answers import Answer
+from app.robot.commands.replies import Reply
 from app.robot.event_messages import (
     MESSAGES,
     format_line,
@@ -91,7 +91,7 @@ EVENTS: list[Event] = [
     FrameRateChanged(18.0, 4.0, sufficient=True),
     OutputFailed(19.0, "stdout", "No space left on device"),
     VehicleReported(20.0, "done: hold"),
-    AnswerGiven(20.0, Answer.repeat, 2, "repeat 'circle' to confirm: hold"),
+    AnswerGiven(20.0, Reply.repeat, 2, "repeat 'circle' to confirm: hold"),
     StateChanged(1.0, TakeState.recording),
     LanguageChanged(0.0, "Rïff", SEAL, 3, ("circle", "⟲"), "full", "as the profile does"),
     LanguageRefused(5.0, "/format: not a language file", SEAL, 3),

@@ -79,6 +79,7 @@ def test_older_clips_get_the_source_that_they_came_as(tmp_path: Path) -> None:
     assert {name: each.job.id for name, each in clips.items()} == {
         name: f"job of {name}" for name in rows
     }
+    assert all(each.clip.job_id == each.job.id for each in clips.values())
     options = options_of(clips["keypoints"].clip)
     assert (options.ending, options.frame_rate, options.frame_size) == (".csv", 25.0, None)
     assert options_of(clips["video"].clip) == ReadOptions()

@@ -28,5 +28,4 @@ def view_clip(found: ClipWithJob) -> ClipView:
         error_code=job.error_code,
         warnings=job.warnings,
         salute_warnings=[*missing, *(tell_chapters(clip.name) if missing else ())],
-        job_id=job.id,
     )

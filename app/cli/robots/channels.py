@@ -15,7 +15,7 @@ from app.recognition.errors import OsgError
 from app.recognition.poses.frame import FrameLandmarks
 from app.recognition.text.wording import ask_twins
 from app.robot import ActiveLanguage, Frame, events
-from app.robot.commands.answers import Answer
+from app.robot.commands.replies import Reply
 from app.robot.event_messages import format_line
 
 Handler = Callable[[events.Event], None]
@@ -103,9 +103,9 @@ class Channels:
         """Pass a line about the vehicle to all channels."""
         self.emit(events.VehicleReported(self._time, text))
 
-    def report_answer(self, answer: Answer, pulses: int, text: str) -> None:
-        """Pass an answer to the diver to all channels."""
-        self.emit(events.AnswerGiven(self._time, answer, pulses, text))
+    def report_reply(self, reply: Reply, pulses: int, text: str) -> None:
+        """Pass a reply to the diver to all channels."""
+        self.emit(events.AnswerGiven(self._time, reply, pulses, text))
 
     def _write(self, event: events.Event) -> list[events.OutputFailed]:
         """Write an event to the streams; return the failures."""

@@ -26,7 +26,7 @@ from app.robot import (
     TakeRecognized,
     open_source,
 )
-from app.robot.commands.answers import Answer
+from app.robot.commands.replies import Reply
 from app.robot.language_watcher import LanguageWatcher
 from app.robot.publishing.publisher import open_publisher
 from app.robot.runtime import Observer
@@ -185,9 +185,10 @@ def run_robot(
         bridge: MavlinkBridge | None = None
         if options.mavlink and (table := options.find_vehicle_table()):
             bridge = open_bridge(
-                options, table, listener, frames, channels.report_vehicle, channels.report_answer
+                options, table, listener, frames, channels.report_vehicle, channels.report_reply
             )
             channels.vehicle = opened.enter_context(closing(bridge)).publish
+            bridge.start()
         runtime = Runtime(
             frames,
             finder,
@@ -216,7 +217,7 @@ def emit_all(events: Iterable[Event], channels: Channels) -> int:
 
 
 def try_answers(options: RobotOptions) -> None:
-    """Show every answer to the diver once, and say which.
+    """Show every reply to the diver once, and say which.
 
     Raises
     ------
@@ -236,7 +237,7 @@ def try_answers(options: RobotOptions) -> None:
         tell(text)
         missing.extend([text] if text.startswith(NOT_SHOWN) else [])
 
-    def note_answer(answer: Answer, pulses: int, text: str) -> None:
+    def note_reply(reply: Reply, pulses: int, text: str) -> None:
         note(f"{pulses} {text}")
 
     stops: list[bool] = []
@@ -245,12 +246,13 @@ def try_answers(options: RobotOptions) -> None:
         opened.enter_context(handle_signals(lambda: stops.append(True), lambda: None))
         watcher = opened.enter_context(LanguageWatcher(options.language, options.profile))
         listener = options.open_listener(watcher.first)
-        bridge = open_bridge(options, options.vehicle, listener, None, note, note_answer)
+        bridge = open_bridge(options, options.vehicle, listener, None, note, note_reply)
         opened.enter_context(closing(bridge))
-        for answer in Answer:
+        bridge.start()
+        for reply in Reply:
             if not stops:
-                bridge.answer(answer, f"{answer.value}: {answer.words}")
-            while not (bridge.has_answered or stops):
+                bridge.reply(reply, f"{reply.value}: {reply.words}")
+            while not (bridge.has_replied or stops):
                 clock.sleep(WAIT_STEP)
     if missing:
         raise VehicleError(missing[0])
@@ -287,9 +289,9 @@ def open_bridge(
     listener: LandmarkListener,
     source: Source | None,
     tell: Callable[[str], None],
-    tell_answer: Callable[[Answer, int, str], None],
+    tell_reply: Callable[[Reply, int, str], None],
 ) -> MavlinkBridge:
-    """Open the bridge to a vehicle.
+    """Open the bridge to a vehicle; it talks once it is started.
 
     Parameters
     ----------
@@ -299,8 +301,8 @@ def open_bridge(
         Vehicle table.
     listener, source
         What recognises gestures, and where its frames come from; None: from nowhere.
-    tell, tell_answer
-        Called with every line about the vehicle, and with every answer to the diver, its pulses and
+    tell, tell_reply
+        Called with every line about the vehicle, and with every reply to the diver, its pulses and
         its words; from any thread.
 
     Raises
@@ -318,8 +320,8 @@ def open_bridge(
         from app.robot.mavlink.table import read_signing_key, read_vehicle_table
     table = read_vehicle_table(table_file)
     language = listener.language.recognizer.language
-    spots = options.without_salutes or listener.language.trigger.spots
-    if faults := [fault for _, fault in table.list_faults(language, spots=spots)]:
+    found = table.list_faults(language, without_salutes=options.without_salutes)
+    if faults := [fault for _, fault in found]:
         raise VehicleError(
             f"{table_file}: {'; '.join(faults)}; correct the table or choose its language "
             f"(this one has {', '.join(language.labels)})"
@@ -336,7 +338,7 @@ def open_bridge(
         lambda: listener.language,
         tell,
         now,
-        tell_answer,
+        tell_reply,
         without_salutes=options.without_salutes,
         memory=table_file.with_name(f"{table_file.name}.before"),
     )

@@ -12,12 +12,12 @@ In a language with phrases the whole message is repeated and executed, not its s
 from __future__ import annotations
 
 import math
-from collections import OrderedDict
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from typing import ClassVar
 
 # Relative, because ROS 2's package has links to these files and no `app`.
-from .answers import Answer, find_phrase_answer
+from .replies import Reply, find_phrase_reply
 from .rules import EMERGENCY_LIMIT, Rules, to_number
 
 MOST_BODIES = 32
@@ -25,27 +25,32 @@ MOST_BODIES = 32
 
 
 @dataclass(frozen=True)
-class RecognizedGesture:
-    """Recognition of one take. What is no finite number becomes NaN, which commands nothing.
+class Showing:
+    """What a diver has shown. What is no finite number becomes NaN, which commands nothing.
 
     Attributes
     ----------
     label
-        The gesture; None for a pair, and when rejected.
+        The gesture, for a message the one that caused its event; None for a pair, a rejected
+        gesture and a pause.
     confidence
-        In [0, 1].
+        In [0, 1]; of a message the lowest of its gestures.
     stamp
-        Time of the picture that ended the take, in seconds.
+        Time of the picture that ended the take, or after which the message was known, in seconds.
     language_id
         Id of the language that recognised it.
     start
-        Time at which the take began, in seconds; None: at `stamp`.
+        Time at which the take or the first gesture began, in seconds; None, of a gesture alone: at
+        `stamp`.
     body_id
-        Whose gesture it is.
+        Whose gesture or message it is.
     pair
-        The two gestures between which the take lies; None: it lies between no two.
+        The two gestures between which the take lies, and of which the diver is asked; None: it lies
+        between no two.
     novelty
-        That of the gesture, see `Recognition`; 0 where it is not known. NaN is not sure.
+        That of a gesture, see `Recognition`; 0 where it is not known. NaN is not sure.
+    noun
+        What it is called.
 
     """
 
@@ -57,20 +62,28 @@ class RecognizedGesture:
     body_id: str = ""
     pair: tuple[str, str] | None = None
     novelty: float = 0.0
+    noun: ClassVar[str] = "gesture"
 
     def __post_init__(self) -> None:
-        """Make NaN of what is no number."""
-        keep_numbers(self, "confidence", "stamp", "novelty", *["start"] * (self.start is not None))
+        """Make floats of numbers from outside, and NaN of what is none; see `to_number`."""
+        for name in ("confidence", "stamp", "start", "novelty"):
+            # Only a gesture may lack its beginning: a message without one is not sure.
+            if name != "start" or self.start is not None or isinstance(self, RecognizedPhrase):
+                object.__setattr__(self, name, to_number(getattr(self, name)))
 
     @property
     def began(self) -> float:
-        """Time at which the take began, in seconds."""
+        """Time at which it began, in seconds."""
         return self.stamp if self.start is None else min(self.start, self.stamp)
 
 
+class RecognizedGesture(Showing):
+    """Recognition of one take."""
+
+
 @dataclass(frozen=True, kw_only=True)
-class RecognizedPhrase:
-    """Recognition of a message of several gestures. What is no finite number becomes NaN.
+class RecognizedPhrase(Showing):
+    """Recognition of a message of several gestures.
 
     Attributes
     ----------
@@ -80,44 +93,13 @@ class RecognizedPhrase:
         The mission as JSON; empty for none.
     text
         Description for the diver.
-    confidence
-        Lowest confidence of its gestures, in [0, 1].
-    start, stamp
-        Time of the first gesture, and of the picture after which the message was known, in seconds.
-    label
-        Label of the gesture that caused the event; None for a pair, a rejected gesture and a pause.
-    language_id
-        Id of its language.
-    body_id
-        Whose message it is.
-    pair
-        The two gestures that the diver is asked about; None: no two.
 
     """
 
     kind: str
     mission: str
     text: str
-    confidence: float
-    start: float
-    stamp: float
-    label: str | None
-    language_id: str
-    body_id: str = ""
-    pair: tuple[str, str] | None = None
-
-    def __post_init__(self) -> None:
-        """Make NaN of what is no number."""
-        keep_numbers(self, "confidence", "start", "stamp")
-
-    @property
-    def began(self) -> float:
-        """Time at which the message began, in seconds."""
-        return min(self.start, self.stamp)
-
-
-Input = RecognizedGesture | RecognizedPhrase
-"""What a diver has shown."""
+    noun: ClassVar[str] = "message"
 
 
 @dataclass(frozen=True)
@@ -156,7 +138,7 @@ class Decision:
         One line for the diver's display and the log.
     cancels
         Whether the diver takes back what was asked before, also a command in progress.
-    answer
+    reply
         What the diver should see; None: nothing, or not before the command is carried out.
 
     """
@@ -166,7 +148,7 @@ class Decision:
     label: str | None = None
     emergency: bool = False
     cancels: bool = False
-    answer: Answer | None = None
+    reply: Reply | None = None
 
 
 @dataclass(frozen=True)
@@ -239,8 +221,8 @@ class CommandDialogue:
         self.table = CommandTable()
         self.pending: Pending | None = None
         self._now = -math.inf
-        self._gestures: OrderedDict[str, Shown] = OrderedDict()
-        self._messages: OrderedDict[str, Shown] = OrderedDict()
+        self._gestures: dict[str, Shown] = {}
+        self._messages: dict[str, Shown] = {}
 
     def set_table(self, table: CommandTable) -> Decision | None:
         """Set the commands of another language and clear a pending gesture or message.
@@ -257,7 +239,7 @@ class CommandDialogue:
             return None
         label, self.pending = self.pending.label, None
         words = f"{label!r} is forgotten: another language was loaded; show it again"
-        return Decision(words, answer=Answer.refused)
+        return Decision(words, reply=Reply.refused)
 
     def decide(self, gesture: RecognizedGesture, now: float) -> Decision:
         """Decide about a gesture.
@@ -295,7 +277,7 @@ class CommandDialogue:
             return self._decide_label(label, gesture)
         if pair is not None:
             return self._decide_pair(pair, gesture)
-        return Decision("not understood; show the gesture again", answer=Answer.refused)
+        return Decision("not understood; show the gesture again", reply=Reply.refused)
 
     def decide_phrase(self, phrase: RecognizedPhrase, now: float) -> Decision:
         """Decide about a phrase event, which follows a gesture or a pause.
@@ -323,20 +305,20 @@ class CommandDialogue:
             return Decision(refused)
         self._remember(self._messages, phrase, understood=whole)
         pending = self.pending if self.pending and self.pending.mission else None
-        in_time = self._is_repetition(pending, phrase)
+        repeated = self._find_repeated(pending, phrase)
         if phrase.kind == "complete" and phrase.mission:
-            return self._complete(phrase, pending if in_time else None)
-        if phrase.kind == "continues" and pending and in_time:
-            self.pending = replace(pending, deadline=phrase.stamp + self.rules.confirm_seconds)
+            return self._complete(phrase, repeated)
+        if phrase.kind == "continues" and repeated:
+            self.pending = replace(repeated, deadline=phrase.stamp + self.rules.confirm_seconds)
         stays = phrase.kind in ("continues", "repeat")
         stays |= phrase.kind == "outside" and phrase.label is None
-        answer = find_phrase_answer(phrase.kind, phrase.label, phrase.pair)
+        reply = find_phrase_reply(phrase.kind, phrase.label, phrase.pair)
         if pending is None or stays:
             if phrase.pair is not None and self.rules.emergency.intersection(phrase.pair):
                 return self._ask(phrase.pair)
-            return Decision(phrase.text, answer=answer)
+            return Decision(phrase.text, reply=reply)
         self.pending = None
-        return Decision(f"{phrase.text}; {pending.label!r} is forgotten", answer=answer)
+        return Decision(f"{phrase.text}; {pending.label!r} is forgotten", reply=reply)
 
     def check_deadline(self, now: float) -> Decision | None:
         """Clear the pending gesture or message after its deadline.
@@ -358,7 +340,7 @@ class CommandDialogue:
             return None
         self.pending = None
         words = f"{pending.label!r} was not repeated in time; show it twice"
-        return Decision(words, answer=Answer.refused)
+        return Decision(words, reply=Reply.refused)
 
     def _follow_clock(self, now: float) -> None:
         """Store the time; when the clock was set back, shift all stored times with it."""
@@ -371,47 +353,45 @@ class CommandDialogue:
                     shown[body] = Shown(last.stamp + step, last.started + step, last.middle + step)
         self._now = to_number(now)
 
-    def _remember(self, shown: OrderedDict[str, Shown], input_: Input, *, understood: bool) -> None:
+    def _remember(self, shown: dict[str, Shown], showing: Showing, *, understood: bool) -> None:
         """Store the last event of a body."""
-        last = shown.pop(input_.body_id, Shown())
+        last = shown.pop(showing.body_id, Shown())
         # A stamp in the future must not make later events count as old.
-        stamp = self._now if math.isnan(input_.stamp) else min(input_.stamp, self._now)
-        middle = (input_.began + stamp) / 2 if understood else last.middle
-        shown[input_.body_id] = Shown(
-            max(stamp, last.stamp), max(min(input_.began, stamp), last.started), middle
+        stamp = self._now if math.isnan(showing.stamp) else min(showing.stamp, self._now)
+        middle = (showing.began + stamp) / 2 if understood else last.middle
+        shown[showing.body_id] = Shown(
+            max(stamp, last.stamp), max(min(showing.began, stamp), last.started), middle
         )
         if len(shown) > MOST_BODIES:
-            shown.popitem(last=False)
+            del shown[next(iter(shown))]
 
-    def _find_refusal(self, input_: Input, before: Shown, *, is_newer: bool) -> str | None:
+    def _find_refusal(self, showing: Showing, before: Shown, *, is_newer: bool) -> str | None:
         """Return why a gesture or message is ignored; None where it is not."""
-        what = _name(input_)
-        if refused := self._find_foreign(input_, self.rules.stale_seconds):
+        what = showing.noun
+        if refused := self._find_foreign(showing, self.rules.stale_seconds):
             return refused
         if not is_newer:
             return f"ignored: the {what} is not newer than the one before"
-        if input_.began < before.middle:
+        if showing.began < before.middle:
             return f"ignored: the {what} is the one before, recognised once more"
         return None
 
-    def _find_foreign(self, input_: Input, oldest: float) -> str | None:
+    def _find_foreign(self, showing: Showing, oldest: float) -> str | None:
         """Return why a gesture or message is not of here and now; None where it is."""
-        what, age = _name(input_), self._now - input_.stamp
-        if math.isnan(input_.stamp + input_.began):
+        what, age = showing.noun, self._now - showing.stamp
+        if math.isnan(showing.stamp + showing.began):
             return f"ignored: the {what} has no stamp"
         if not abs(age) <= oldest:
             return f"ignored: the {what} is stamped {age:.1f} s ago, stale or of another clock"
-        if input_.language_id != self.table.language_id:
+        if showing.language_id != self.table.language_id:
             return f"ignored: the {what} is of another language than the commands"
         return None
 
-    def _is_repetition(self, pending: Pending | None, input_: Input) -> bool:
-        """Return whether an input may confirm the pending one: in time, and of the same body."""
-        return (
-            pending is not None
-            and input_.stamp <= pending.deadline
-            and input_.body_id == pending.body_id
-        )
+    def _find_repeated(self, pending: Pending | None, showing: Showing) -> Pending | None:
+        """Return what is confirmed, if it was shown in time, and by the same body."""
+        if pending is None or not showing.stamp <= pending.deadline:
+            return None
+        return pending if showing.body_id == pending.body_id else None
 
     def _decide_label(self, label: str, gesture: RecognizedGesture) -> Decision:
         pending, self.pending = self.pending, None
@@ -422,18 +402,18 @@ class CommandDialogue:
             return Decision(f"{label!r} counts within a phrase only", label=label)
         if label in self.rules.cancel:
             what = f"{pending.label!r} is cancelled" if pending else "nothing to cancel"
-            return Decision(what, label=label, cancels=True, answer=Answer.done)
+            return Decision(what, label=label, cancels=True, reply=Reply.done)
         if command is None:
-            return Decision(f"{label!r} has no command", label=label, answer=Answer.refused)
+            return Decision(f"{label!r} has no command", label=label, reply=Reply.refused)
         if label in self.rules.emergency:
             return Decision(f"emergency {label!r}: {command}", command, label, emergency=True)
-        repeated = self._is_repetition(pending, gesture) and pending and label in pending.labels
-        if not self.rules.confirmed or repeated:
+        repeated = self._find_repeated(pending, gesture)
+        if not self.rules.confirmed or (repeated and label in repeated.labels):
             return Decision(f"{label!r}: {command}", command, label)
         deadline = gesture.stamp + self.rules.confirm_seconds
         self.pending = Pending(label, deadline, body_id=gesture.body_id, labels=(label,))
         words = f"repeat {label!r} to confirm: {command}"
-        return Decision(words, label=label, answer=Answer.repeat)
+        return Decision(words, label=label, reply=Reply.repeat)
 
     def _decide_pair(self, pair: tuple[str, str], gesture: RecognizedGesture) -> Decision:
         """Ask which of two gestures was meant; the next showing decides, and confirms."""
@@ -443,27 +423,22 @@ class CommandDialogue:
         self.pending = None
         if not {*self.table.commands, *self.rules.cancel}.intersection(pair):
             named = " and ".join(map(repr, pair))
-            return Decision(f"{named} have no command", answer=Answer.refused)
-        in_time = pending if self._is_repetition(pending, gesture) else None
-        if in_time and in_time.asked:
-            return Decision("not understood; begin again", answer=Answer.refused)
+            return Decision(f"{named} have no command", reply=Reply.refused)
+        repeated = self._find_repeated(pending, gesture)
+        if repeated and repeated.asked:
+            return Decision("not understood; begin again", reply=Reply.refused)
         # What was shown alone before is confirmed by itself only.
-        before = () if in_time is None else in_time.labels
+        before = () if repeated is None else repeated.labels
         labels = tuple(each for each in pair if each in before) or pair
         deadline = gesture.stamp + self.rules.confirm_seconds
-        self.pending = Pending(
-            " or ".join(labels),
-            deadline,
-            body_id=gesture.body_id,
-            labels=labels,
-            asked=True,
-        )
+        label = " or ".join(labels)
+        self.pending = Pending(label, deadline, None, gesture.body_id, labels, asked=True)
         return self._ask(pair)
 
     def _ask(self, pair: tuple[str, str]) -> Decision:
         """Ask which gesture was meant, with an emergency first."""
         named = sorted(pair, key=lambda each: each not in self.rules.emergency)
-        return Decision(f"{' or '.join(named)}? show it again", answer=Answer.one_of_two)
+        return Decision(f"{' or '.join(named)}? show it again", reply=Reply.one_of_two)
 
     @property
     def _phrase_only(self) -> frozenset[str]:
@@ -474,21 +449,11 @@ class CommandDialogue:
         """Decide about a complete message, which may confirm `pending`."""
         # True for NaN too: what is no share of 1 is no confidence.
         if not self.rules.least_confidence <= phrase.confidence <= 1:
-            return Decision("not understood; show the message again", answer=Answer.refused)
+            return Decision("not understood; show the message again", reply=Reply.refused)
         self.pending = None
         if not self.rules.confirmed or (pending and pending.mission == phrase.mission):
             return Decision(phrase.text, phrase.mission, phrase.text)
         deadline = phrase.stamp + self.rules.confirm_seconds
         self.pending = Pending(phrase.text, deadline, phrase.mission, phrase.body_id)
         words = f"repeat the message to confirm: {phrase.text}"
-        return Decision(words, label=phrase.text, answer=Answer.repeat)
-
-
-def keep_numbers(input_: Input, *names: str) -> None:
-    """Make floats of numbers from outside, and NaN of what is none; see `to_number`."""
-    for name in names:
-        object.__setattr__(input_, name, to_number(getattr(input_, name)))
-
-
-def _name(input_: Input) -> str:
-    return "message" if isinstance(input_, RecognizedPhrase) else "gesture"
+        return Decision(words, label=phrase.text, reply=Reply.repeat)

@@ -15,17 +15,8 @@ from typing import Any, Final
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from app.robot.mavlink.table import (
-    Action,
-    Camera,
-    Depth,
-    Hold,
-    Lights,
-    Mode,
-    SlotName,
-    Surface,
-    Vehicle,
-)
+from app.robot.mavlink import table
+from app.robot.mavlink.table import Action, SlotName, Vehicle
 
 Message = Any
 """A message of pymavlink, which has no types."""
@@ -95,13 +86,12 @@ class Reported:
         match message.get_type():
             case "COMMAND_ACK":
                 command = (message.get_srcComponent(), message.command)
-                if message.result not in GO_ON:
+                if message.result == mavlink.MAV_RESULT_ACCEPTED:
+                    self.acknowledged[command] = True
+                elif message.result == mavlink.MAV_RESULT_IN_PROGRESS:
+                    self.acknowledged.setdefault(command, False)
+                elif message.result not in GO_ON:
                     self.acknowledged.pop(command, None)
-                elif message.result != mavlink.MAV_RESULT_TEMPORARILY_REJECTED:
-                    is_accepted = message.result == mavlink.MAV_RESULT_ACCEPTED
-                    self.acknowledged[command] = is_accepted or self.acknowledged.get(
-                        command, False
-                    )
             case "HEARTBEAT":
                 self.mode = message.custom_mode
             case "VFR_HUD":
@@ -261,9 +251,9 @@ def describe_refusal(mode: str, version: int) -> str:
 
 def describe_sent(action: Action, vehicle: Vehicle) -> str:
     """Describe the messages that request an action, such as ``DO_SET_MODE SURFACE``."""
-    if isinstance(action, Depth) and isinstance(action.metres, SlotName):
+    if isinstance(action, table.Depth) and isinstance(action.metres, SlotName):
         slot, deepest = action.metres.slot, vehicle.deepest
-        shown = describe_sent(Depth(do="depth", metres=deepest), vehicle)
+        shown = describe_sent(table.Depth(do="depth", metres=deepest), vehicle)
         return shown.replace(f"{deepest:g} m", f"{slot} m, at most {deepest:g}")
     return ", then ".join(describe_step(step) for step in build_steps(action, vehicle, 1))
 
@@ -296,19 +286,19 @@ def build_steps(action: Action, vehicle: Vehicle, picture: int) -> tuple[Step, .
     """
     address = (vehicle.system, vehicle.component)
     match action:
-        case Hold() | Surface() | Mode():
+        case table.Hold() | table.Surface() | table.Mode():
             mode = getattr(mavlink, f"SUB_MODE_{action.mode}")
             chosen = (mavlink.MAV_MODE_FLAG_CUSTOM_MODE_ENABLED, mode)
             return (CommandStep(mavlink.MAV_CMD_DO_SET_MODE, chosen, *address, mode),)
-        case Lights(percent=percent):
+        case table.Lights(percent=percent):
             pulse = round(LEAST_PWM + (MOST_PWM - LEAST_PWM) * percent / 100)
             command = mavlink.MAV_CMD_DO_SET_SERVO
             return (CommandStep(command, (vehicle.lights_servo, pulse), *address),)
-        case Camera():
+        case table.Camera():
             command = mavlink.MAV_CMD_IMAGE_START_CAPTURE
             camera = (vehicle.system, vehicle.camera_component)
             return (CommandStep(command, (0.0, 0.0, 1.0, float(picture)), *camera),)
-        case Depth(metres=float() as metres):
+        case table.Depth(metres=float() as metres):
             # ArduSub accepts a target depth only in ALT_HOLD.
-            return (*build_steps(Hold(), vehicle, picture), DepthStep(metres, *address))
+            return (*build_steps(table.Hold(), vehicle, picture), DepthStep(metres, *address))
     raise ValueError(f"{action!r} has an open slot: resolve it first")

@@ -28,9 +28,9 @@ class HeardClock:
 
     """
 
-    def __init__(self) -> None:
+    def __init__(self, last: float = -math.inf) -> None:
         self.seconds = 0.0
-        self.last = -math.inf
+        self.last = last
 
     def hear(self, now: float) -> None:
         """Note that the vehicle is heard now, in seconds of a steady clock."""

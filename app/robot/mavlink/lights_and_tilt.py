@@ -12,7 +12,7 @@ from typing import Final
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from app.robot.commands.answers import PULSE_SECONDS
+from app.robot.commands.replies import PULSE_SECONDS
 from app.robot.mavlink.actions import LEAST_PWM, MOST_PWM, CommandStep, Message, VehicleFacts
 from app.robot.mavlink.table import Vehicle
 
@@ -41,7 +41,7 @@ class LightsOutput:
     tolerance = 0.5
     travels = False
 
-    def __init__(self, vehicle: Vehicle, facts: VehicleFacts | None = None) -> None:
+    def __init__(self, vehicle: Vehicle, facts: VehicleFacts) -> None:
         self.vehicle = vehicle
         self._facts = facts
         self.key = f"{self.name} {vehicle.system} {vehicle.lights_servo}"
@@ -51,7 +51,7 @@ class LightsOutput:
     @property
     def obstacle(self) -> str:
         """Why the lights must not be set; empty if they may."""
-        return "" if self._facts is None else self._facts.obstacle
+        return self._facts.obstacle
 
     def read(self, message: Message) -> float | None:
         """Return the pulse length that a message reports. An output that does nothing reports 0."""

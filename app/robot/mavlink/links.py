@@ -34,7 +34,7 @@ MOST_FAULTS: Final = 8
 CONNECT_SECONDS: Final = 3.0
 """Seconds to connect over TCP; a vehicle on the same boat answers within milliseconds."""
 
-UNANSWERED_MS: Final = 5000
+UNCONFIRMED_MS: Final = 5000
 """Milliseconds after which a TCP connection whose other end confirms nothing is given up. The
 system would wait for minutes, also for a vehicle that has long started again."""
 
@@ -108,16 +108,6 @@ class Reader:
         return found, faults
 
 
-def create_signing(key: bytes | None) -> mavlink.MAVLinkSigning:
-    """Create pymavlink's state of the signatures; without a key nothing is signed."""
-    signing = mavlink.MAVLinkSigning()
-    if key is not None:
-        signing.secret_key = key
-        signing.sign_outgoing = True
-        signing.timestamp = max(0, round((clock.time() - SIGNING_BEGAN) * SIGNING_TICKS))
-    return signing
-
-
 class SigningTime:
     """Time of the signatures, which never goes back, whatever the machine's clock does.
 
@@ -139,7 +129,12 @@ class SigningTime:
     """
 
     def __init__(self, key: bytes | None, file: Path | None) -> None:
-        self.signing = create_signing(key)
+        self.signing = mavlink.MAVLinkSigning()
+        if key is not None:
+            self.signing.secret_key = key
+            self.signing.sign_outgoing = True
+            since = clock.time() - SIGNING_BEGAN
+            self.signing.timestamp = max(0, round(since * SIGNING_TICKS))
         self._file, self._began = file, clock.monotonic()
         try:
             kept = int(file.read_bytes()) if file is not None and file.exists() else 0
@@ -260,7 +255,7 @@ class StreamLink:
         try:
             self._socket.sendall(data)
         except OSError:
-            self._drop()
+            self.close()
             raise
 
     def send(self, message: Message, to: Sender | None) -> None:
@@ -281,18 +276,14 @@ class StreamLink:
         try:
             data = self._socket.recv(LARGEST_DATAGRAM)
         except OSError:
-            self._drop()
+            self.close()
             raise
         if not data:
-            self._drop()
+            self.close()
             raise ConnectionError("the vehicle closed the connection")
         messages, dropped = self._reader.read(data)
         self.dropped += dropped
         return [(message, self.expected) for message in messages]
-
-    def close(self) -> None:
-        """Close the connection."""
-        self._drop()
 
     def _connect(self) -> None:
         """Connect, at most once in `RECONNECT_SECONDS`."""
@@ -301,13 +292,14 @@ class StreamLink:
         self._tried = clock.monotonic()
         self._socket = socket.create_connection(self._address, CONNECT_SECONDS)
         if hasattr(socket, "TCP_USER_TIMEOUT"):  # on Linux
-            self._socket.setsockopt(socket.IPPROTO_TCP, socket.TCP_USER_TIMEOUT, UNANSWERED_MS)
+            self._socket.setsockopt(socket.IPPROTO_TCP, socket.TCP_USER_TIMEOUT, UNCONFIRMED_MS)
         self.expected = (self.expected[0] + 1,)
         self._codec = mavlink.MAVLink(self, self._system, OUR_COMPONENT)
         self._codec.signing = self._time.signing
         self._reader = Reader(self._time.signing)
 
-    def _drop(self) -> None:
+    def close(self) -> None:
+        """Close the connection."""
         if self._socket is not None:
             self._socket.close()
             self._socket = None

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable
+from contextlib import suppress
 from pathlib import Path
 from typing import Final
 
@@ -22,8 +23,8 @@ NUMBERS: Final = TypeAdapter(dict[str, list[FiniteFloat]])
 class Memory:
     """Numbers under names, kept in a file; without one, for this run alone.
 
-    A file that cannot be read counts as empty. One that cannot be written is told once, already at
-    the start, and the bridge goes on without it.
+    A file that cannot be read, or holds anything but finite numbers, counts as empty. One that
+    cannot be written is told once, already at the start, and the bridge goes on without it.
 
     Parameters
     ----------
@@ -34,9 +35,12 @@ class Memory:
 
     """
 
-    def __init__(self, file: Path | None = None, tell: Callable[[str], None] = print) -> None:
+    def __init__(self, file: Path | None, tell: Callable[[str], None]) -> None:
         self._file, self._tell, self._told = file, tell, False
-        self._kept = {} if file is None else read_numbers(file)
+        self._kept: dict[str, list[float]] = {}
+        if file is not None:
+            with suppress(OSError, ValueError), file.open("rb") as opened:
+                self._kept = NUMBERS.validate_json(opened.read(MOST_BYTES), strict=True)
         self._save()
 
     def find(self, name: str) -> list[float]:
@@ -62,12 +66,3 @@ class Memory:
             if not self._told:
                 self._tell(f"{self._file} cannot be written ({error.strerror}): a restart forgets")
             self._told = True
-
-
-def read_numbers(file: Path) -> dict[str, list[float]]:
-    """Read what a memory's file holds; nothing if it is not finite numbers throughout."""
-    try:
-        with file.open("rb") as opened:
-            return NUMBERS.validate_json(opened.read(MOST_BYTES), strict=True)
-    except (OSError, ValueError):
-        return {}

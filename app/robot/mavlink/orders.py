@@ -39,7 +39,7 @@ SHOW_SECONDS: Final = LONGEST_GAP
 
 MOST_OVERRIDES: Final = 2
 """Accepted requests of a mode that did not show it, after which the order ends: a pilot may set the
-old one. The first answer may be a late one to an earlier request."""
+old one. The first acknowledgement may be a late one, of an earlier request."""
 
 LATE_SECONDS: Final = 10.0
 """Heard seconds after a request, or after it was given up, in which the vehicle may still take that
@@ -50,7 +50,7 @@ OTHER_PILOT: Final = "the pilot changed the mode"
 DISARMED: Final = "vehicle is disarmed"
 
 OutcomeKind = Literal[
-    "done", "refused", "unanswered", "replaced", "cancelled", "stopped", "waits", "late"
+    "done", "refused", "unproven", "replaced", "cancelled", "stopped", "waits", "late"
 ]
 
 
@@ -92,12 +92,12 @@ class Outcome:
     order
         The order.
     kind
-        ``done``: proven by the vehicle. ``refused``: by the vehicle. ``unanswered``: not proven in
+        ``done``: proven by the vehicle. ``refused``: by the vehicle. ``unproven``: not proven in
         time. ``replaced``: by a newer order. ``cancelled``: by the diver. ``stopped``:
-        for the reason in `answer`. ``waits``: it goes on, in spite of the reason in `answer`.
+        for the `reason`. ``waits``: it goes on, in spite of the `reason`.
         ``late``: the vehicle shows what was given up, after all.
-    answer
-        The reason, such as ``refused (DENIED)``.
+    reason
+        Why, in few words, such as ``refused (DENIED)``.
     sent
         What was sent of an order that is not proven, and how often: the vehicle may still do it.
 
@@ -105,7 +105,7 @@ class Outcome:
 
     order: Order
     kind: OutcomeKind
-    answer: str = ""
+    reason: str = ""
     sent: str = ""
 
 
@@ -218,11 +218,12 @@ class OrderDesk:
 
     def list_due(self, now: float) -> Sequence[Message]:
         """Return the messages to send now."""
-        if self.order is None or now < self._next or self._is_over(now) or self._watch.keeps_back:
+        if self.order is None or now < self._next or self._watch.keeps_back:
             return ()
-        # Unanswered requests may wait in the link and all be obeyed late, so none is repeated until
-        # the vehicle is heard again. An emergency is, for `SILENT_SECONDS`: perhaps only the way
-        # back is broken.
+        if self._is_over(self.order, now):
+            return ()
+        # Requests may wait in the link and all be obeyed late: none is repeated before the vehicle
+        # is heard again. An emergency is, for `SILENT_SECONDS`: perhaps only the way back fails.
         heard = self._clock.last
         is_urgent = self.order.emergency and now - max(heard, self._given) <= SILENT_SECONDS
         step = self.order.steps[self._position]
@@ -239,18 +240,17 @@ class OrderDesk:
         self._next = now + self._vehicle.repeat_seconds
         return (due,)
 
-    def _is_over(self, now: float) -> bool:
+    def _is_over(self, order: Order, now: float) -> bool:
         """Return whether the active order has had its time."""
-        assert self.order is not None
-        return (self._clock.seconds if self.order.emergency else now) > self._deadline
+        return (self._clock.seconds if order.emergency else now) > self._deadline
 
     def check_deadline(self, now: float) -> Outcome | None:
         """Return the outcome of an order that the vehicle has not done in time."""
-        if self.order is None or not self._is_over(now):
+        if self.order is None or not self._is_over(self.order, now):
             return None
         if self.order.moves and self._armed is False:
             return self._end("stopped", DISARMED)
-        return self._give_up("unanswered")
+        return self._give_up("unproven")
 
     def hear(self, message: Message, now: float, *, proves: bool = True) -> Outcome | None:
         """Process a message of the vehicle; `proves`: it comes from the vehicle for certain.
@@ -282,7 +282,7 @@ class OrderDesk:
             return self._fail(self.order, reason, now)
         if self._watch.contradiction:
             return self._end("stopped", self._watch.contradiction)
-        return self._hear_answer(message, now) if self._sent else None
+        return self._hear_proof(self.order, message, now) if self._sent else None
 
     def _find_failure(self, order: Order) -> str:
         """Return why the next action of an emergency is due; empty if none is."""
@@ -293,21 +293,20 @@ class OrderDesk:
         is_over = self._clock.seconds - self._began > self._vehicle.give_up_seconds
         return reason or ("no effect" if is_over and not is_shown else "")
 
-    def _hear_answer(self, message: Message, now: float) -> Outcome | None:
+    def _hear_proof(self, order: Order, message: Message, now: float) -> Outcome | None:
         """Process what may prove or refuse the present step."""
-        assert self.order is not None
-        step = self.order.steps[self._position]
+        step = order.steps[self._position]
         if step.is_done(self._reported):
-            return self._advance(now)
+            return self._advance(order, now)
         if message.get_type() != "COMMAND_ACK" or (
             (message.get_srcComponent(), message.command) != (step.component, step.command)
         ):
             return None
-        self._watch.hear_answer(message.result, self._clock.seconds)
+        self._watch.hear_acknowledgement(message.result, self._clock.seconds)
         if message.result in GO_ON:
             return None
         result = name_entry("MAV_RESULT", message.result) or str(message.result)
-        return self._fail(self.order, f"refused ({result})", now)
+        return self._fail(order, f"refused ({result})", now)
 
     def _fail(self, failed: Order, reason: str, now: float) -> Outcome | None:
         """End an order that is refused; of an emergency try the next action, told once for each."""
@@ -330,30 +329,23 @@ class OrderDesk:
         self._reported.hear(message)
         match message.get_type():
             case "SYSTEM_TIME":
-                self._note_uptime(message.time_boot_ms, now)
+                # A vehicle that has started again has lost its orders.
+                if message.time_boot_ms + REBOOT_MS < self._uptime:
+                    self.reboots += 1
+                    self._reported, self._mode = Reported(), None
+                    self._begin(0, now)
+                self._uptime = message.time_boot_ms
                 self._watch.hear_clock()
             case "HEARTBEAT":
                 self._mode = int(message.custom_mode)
                 self._armed = bool(message.base_mode & mavlink.MAV_MODE_FLAG_SAFETY_ARMED)
                 self._watch.hear_mode(self._mode, self._clock.seconds, sent=self._sent > 0)
 
-    def _note_uptime(self, uptime: int, now: float) -> None:
-        """Detect a restart of the vehicle, which has then lost its orders."""
-        if uptime + REBOOT_MS < self._uptime:
-            self.reboots += 1
-            self._reported = Reported()
-            self._mode = None
-            self._begin(0, now)
-        self._uptime = uptime
-
-    def _advance(self, now: float) -> Outcome | None:
-        assert self.order is not None
-        if self._position + 1 < len(self.order.steps):
+    def _advance(self, order: Order, now: float) -> Outcome | None:
+        if self._position + 1 < len(order.steps):
             self._begin(self._position + 1, now)
             return None
-        if self.order.moves and self._armed is False:
-            return None
-        return self._end("done")
+        return None if order.moves and self._armed is False else self._end("done")
 
     def _begin(self, position: int, now: float) -> None:
         """Begin a step of the active order, if any; earlier reports do not prove it."""
@@ -370,11 +362,11 @@ class OrderDesk:
             modes[-1] if modes else None, (self._mode, *late), is_shown=is_shown
         )
 
-    def _end(self, kind: OutcomeKind, answer: str = "") -> Outcome:
+    def _end(self, kind: OutcomeKind, reason: str = "") -> Outcome:
         assert self.order is not None
         order, self.order = self.order, None
         self._watch = ModeWatch(None)
-        return Outcome(order, kind, answer)
+        return Outcome(order, kind, reason)
 
 
 class ModeWatch:
@@ -416,7 +408,7 @@ class ModeWatch:
         self._doubted: float | None = None
         self.contradiction = ""
 
-    def hear_answer(self, result: int, now: float) -> None:
+    def hear_acknowledgement(self, result: int, now: float) -> None:
         """Note that the vehicle has accepted the mode, or refused it after all."""
         if result not in GO_ON:
             self._accepted = None
@@ -461,11 +453,11 @@ class ModeWatch:
 
 
 def is_from_vehicle(message: Message, vehicle: Vehicle) -> bool:
-    """Return whether a message is the vehicle's own report, or its answer to us."""
+    """Return whether a message is the vehicle's own report, or acknowledges us."""
     sender = (message.get_srcSystem(), message.get_srcComponent())
     if message.get_type() != "COMMAND_ACK":
         return sender == (vehicle.system, vehicle.component)
-    # Answers to a ground station arrive here too; older vehicles send no address.
+    # What acknowledges a ground station arrives here too; older vehicles send no address.
     ours = ((0, 0), (vehicle.system, OUR_COMPONENT))
-    answering = ((vehicle.system, part) for part in (vehicle.component, vehicle.camera_component))
-    return sender in answering and (message.target_system, message.target_component) in ours
+    senders = ((vehicle.system, part) for part in (vehicle.component, vehicle.camera_component))
+    return sender in senders and (message.target_system, message.target_component) in ours

@@ -1,4 +1,4 @@
-"""Patterns: the pulses by which lights and tilt show an answer, and what was before them.
+"""Patterns: the pulses by which lights and tilt show a reply, and what was before them.
 
 A pattern begins only when the vehicle reports the present value, and the pilot did not change it a
 moment ago. A value that is neither ours nor the one before is the pilot's: the pattern ends, and
@@ -13,17 +13,18 @@ from __future__ import annotations
 
 import math
 from collections import deque
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from pathlib import Path
 from typing import Final
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from app.robot.commands.answers import Answer
+from app.robot.commands.replies import Reply
 from app.robot.mavlink.actions import GO_ON, CommandStep, Message, Step, VehicleFacts
 from app.robot.mavlink.lights_and_tilt import LightsOutput, Output, TiltOutput, build_command
 from app.robot.mavlink.memory import Memory
 from app.robot.mavlink.orders import is_from_vehicle
-from app.robot.mavlink.table import Answers, Vehicle
+from app.robot.mavlink.table import Replies, Vehicle
 
 REPORT_SECONDS: Final = 0.1
 """Seconds between two reports that the vehicle is asked for: less than half a pulse."""
@@ -35,7 +36,7 @@ ASK_SECONDS: Final = 5.0
 """Seconds between two requests for reports that do not come."""
 
 PILOT_SECONDS: Final = 5.0
-"""Seconds without answers after the pilot has changed the value."""
+"""Seconds without replies after the pilot has changed the value."""
 
 AGAIN_SECONDS: Final = 0.2
 """Seconds after which a value that is not reported is sent again: twice the reports' period."""
@@ -51,8 +52,8 @@ PAUSE_SECONDS: Final = 1.0
 """Seconds between two patterns, twice the time between two pulses, so that they are counted apart;
 also after an order that sets the output."""
 
-ANSWER_SECONDS: Final = 1.0
-"""Seconds after its message within which the vehicle's answer is a pattern's; a later one is an
+ACKNOWLEDGE_SECONDS: Final = 1.0
+"""Seconds after its message within which an acknowledgement is a pattern's; a later one is an
 order's."""
 
 OUTDATED_SECONDS: Final = 1.0
@@ -60,10 +61,10 @@ OUTDATED_SECONDS: Final = 1.0
 """
 
 LATEST_SECONDS: Final = 6.0
-"""Seconds after which an answer that could not begin is dropped: the diver has gone on."""
+"""Seconds after which a reply that could not begin is dropped: the diver has gone on."""
 
 NOT_SHOWN: Final = "not shown to the diver"
-"""Beginning of the line about an answer that could not be shown."""
+"""Beginning of the line about a reply that could not be shown."""
 
 
 class PatternPlayer:
@@ -97,7 +98,7 @@ class PatternPlayer:
         # Whether the next report ends a silence, in which the pilot may have set anything.
         self._was_silent = True
         self._following: deque[bool] = deque()
-        self._unanswered = 0
+        self._unacknowledged = 0
         if len(kept := memory.find(output.key)) == 3:
             self._before, self._peak, self._shown_peak = kept
             self._is_on = False
@@ -129,7 +130,7 @@ class PatternPlayer:
         self._peak = self._shown_peak = self.output.find_peak(self._value)
         self._has_shown = False
         self._following = deque([True, False] * pulses)
-        self._remember()
+        self._memory.keep(self.output.key, self._before, self._peak, self._shown_peak)
         self._turn(self._following.popleft())
 
     def stop(self, now: float) -> None:
@@ -147,7 +148,7 @@ class PatternPlayer:
         self._turn(False)
         # The order may be lost: until it is given up, what is reported shows who has set it.
         self._yields = now + self.output.vehicle.give_up_seconds
-        # Its answers are told from the order's by the time of the last message.
+        # Its acknowledgements are told from the order's by the time of the last message.
         self._sent = now
         return [self._set(self._before)]
 
@@ -157,22 +158,22 @@ class PatternPlayer:
         self._value, self._heard = math.nan, -math.inf
 
     def hear(self, message: Message, now: float) -> bool:
-        """Process a message of the vehicle; return whether it answers a pattern."""
+        """Process a message of the vehicle; return whether it acknowledges a pattern."""
         if not is_from_vehicle(message, self.output.vehicle):
             return False
         if message.get_type() == "COMMAND_ACK" and message.command == self.output.command:
-            return self._hear_answer(message.result, now)
+            return self._hear_acknowledgement(message.result, now)
         value = self.output.read(message)
         if value is not None:
             self._hear_value(value, now)
         return False
 
-    def _hear_answer(self, result: int, now: float) -> bool:
-        # A lost answer must not make a later one, to an order, count as a pattern's.
-        if not self._unanswered or now - self._sent > ANSWER_SECONDS:
-            self._unanswered = 0
+    def _hear_acknowledgement(self, result: int, now: float) -> bool:
+        # A lost acknowledgement must not make a later one, to an order, count as a pattern's.
+        if not self._unacknowledged or now - self._sent > ACKNOWLEDGE_SECONDS:
+            self._unacknowledged = 0
             return False
-        self._unanswered -= 1
+        self._unacknowledged -= 1
         if result not in GO_ON:
             self._is_refused = True
             self._drop()
@@ -189,12 +190,8 @@ class PatternPlayer:
                 self._changed = self._rested = now
         elif self._equals(value, self._expected):
             self._expected = math.nan
-        elif not (
-            math.isnan(last)
-            or self._equals(value, last)
-            # Reports from before the order are on their way.
-            or now - self._handed < OUTDATED_SECONDS
-        ):
+        # False before the first report. Those from before an order are on their way.
+        elif abs(value - last) > self.output.tolerance and now - self._handed >= OUTDATED_SECONDS:
             self._changed = now
         self._was_silent = False
 
@@ -215,7 +212,7 @@ class PatternPlayer:
         # The first pulse shows how far the vehicle goes.
         if self._is_on and not self._has_shown and lies_between:
             self._shown_peak = value
-            self._remember()
+            self._memory.keep(self.output.key, self._before, self._peak, self._shown_peak)
         self._has_shown |= self._equals(value, self._shown_peak)
         return self._equals(value, self._shown_peak)
 
@@ -268,59 +265,56 @@ class PatternPlayer:
         self._is_on, self._lasted = is_on, 0.0
         self._sent = self._yields = -math.inf
 
-    def _remember(self) -> None:
-        self._memory.keep(self.output.key, self._before, self._peak, self._shown_peak)
-
     def _drop(self) -> None:
         self._following.clear()
         self._is_on = None
         self._memory.keep(self.output.key)
 
     def _set(self, value: float) -> Message:
-        self._unanswered += 1
+        self._unacknowledged += 1
         return self.output.build(value)
 
 
-class AnswerDesk:
-    """State of the answers to the diver: the newest that waits, and the patterns.
+class ReplyDesk:
+    """State of the replies to the diver: the newest that waits, and the patterns.
 
-    A newer answer replaces one that waits, but none replaces that of an emergency, which also ends
+    A newer reply replaces one that waits, but none replaces that of an emergency, which also ends
     the pattern that is played. No pattern is played while a take is open.
 
     Parameters
     ----------
-    answers, vehicle
+    replies, vehicle
         The table's; None: nothing is shown.
-    memory
-        Keeps what was before a pattern.
     facts
-        What the lights' output does; None: it is known to be the lights'.
+        What the lights' output does.
+    file
+        File that keeps what was before a pattern; None: a restart forgets it.
+    tell
+        Called with a line for people, such as why a reply could not be shown.
 
     Attributes
     ----------
     is_take_open
         Whether the diver is showing a gesture.
-    notices
-        Lines for people, to be taken by the caller: answers that could not be shown.
 
     """
 
     def __init__(
         self,
-        answers: Answers | None,
+        replies: Replies | None,
         vehicle: Vehicle,
-        memory: Memory | None = None,
-        facts: VehicleFacts | None = None,
+        facts: VehicleFacts,
+        file: Path | None,
+        tell: Callable[[str], None],
     ) -> None:
-        lights, tilt = LightsOutput(vehicle, facts), TiltOutput(vehicle)
-        outputs: dict[str, Output] = {"lights": lights, "tilt": tilt}
-        self._answers = answers
-        shown = () if answers is None else answers.show
-        self._players = [PatternPlayer(outputs[name], memory or Memory()) for name in shown]
-        # The answer, its pulses, when it was given, and whether to an emergency.
-        self._waiting: tuple[Answer, int, float, bool] | None = None
+        outputs = (LightsOutput(vehicle, facts), TiltOutput(vehicle))
+        self._table, self._tell = replies, tell
+        memory = Memory(None if replies is None else file, tell)
+        shown = () if replies is None else replies.show
+        self._players = [PatternPlayer(each, memory) for each in outputs if each.name in shown]
+        # The reply, its pulses, when it was given, and whether to an emergency.
+        self._waiting: tuple[Reply, int, float, bool] | None = None
         self.is_take_open = False
-        self.notices: list[str] = []
 
     @property
     def is_active(self) -> bool:
@@ -332,11 +326,11 @@ class AnswerDesk:
         """Whether nothing is shown and nothing waits to be shown."""
         return self._waiting is None and not self.is_active
 
-    def give(self, answer: Answer, now: float, *, emergency: bool = False) -> int:
-        """Show an answer as soon as it may be shown; return its number of pulses, 0 for none."""
-        pulses = 0 if self._answers is None else self._answers.count_pulses(answer)
+    def give(self, reply: Reply, now: float, *, emergency: bool = False) -> int:
+        """Show a reply as soon as it may be shown; return its number of pulses, 0 for none."""
+        pulses = 0 if self._table is None else self._table.count_pulses(reply)
         if pulses and (self._waiting is None or emergency or not self._waiting[3]):
-            self._waiting = (answer, pulses, now, emergency)
+            self._waiting = (reply, pulses, now, emergency)
             if emergency:
                 self.stop(now)
         return pulses
@@ -358,7 +352,7 @@ class AnswerDesk:
             player.forget()
 
     def hear(self, message: Message, now: float) -> bool:
-        """Process a message of the vehicle; return whether it answers a pattern, and no order."""
+        """Process a message of the vehicle; return whether it acknowledges a pattern only."""
         return any([player.hear(message, now) for player in self._players])
 
     def list_due(self, now: float, *, may_begin: bool) -> Iterator[Message]:
@@ -370,7 +364,7 @@ class AnswerDesk:
         for player in self._players:
             yield from player.list_due(now)
 
-    def _begin(self, answer: Answer, pulses: int, given: float, now: float) -> None:
+    def _begin(self, reply: Reply, pulses: int, given: float, now: float) -> None:
         obstacles = [player.find_obstacle(now) for player in self._players]
         able = [player for player, found in zip(self._players, obstacles, strict=True) if not found]
         if able and all(player.is_free(now) for player in able):
@@ -380,4 +374,4 @@ class AnswerDesk:
         elif now - given > LATEST_SECONDS:
             self._waiting = None
             why = ", ".join(filter(None, obstacles)) or "another is shown"
-            self.notices.append(f"{NOT_SHOWN}, {why}: {answer.value}")
+            self._tell(f"{NOT_SHOWN}, {why}: {reply.value}")

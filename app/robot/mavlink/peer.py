@@ -11,7 +11,8 @@ nobody knows then which one is the vehicle.
 from __future__ import annotations
 
 import math
-from typing import Any, Final
+from collections.abc import Callable
+from typing import Any, Final, Literal
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
@@ -22,6 +23,10 @@ from app.robot.mavlink.table import Vehicle
 
 Sender = tuple[Any, ...]
 """Address of a socket; empty for a connection that has one sender alone."""
+
+Place = Literal["own", "free", "taken", "foreign"]
+"""Of an address: the vehicle's, or the first one; one that the silent vehicle may have moved to; a
+rival's, because the vehicle is at another; one that the link or the table excludes."""
 
 NO_ARDUSUB: Final = "no ArduSub"
 
@@ -44,6 +49,8 @@ class VehiclePeer:
         MAVLink ids of the vehicle.
     now
         Present time; every method takes it in seconds of a steady clock.
+    tell
+        Called with a line for people.
     expected
         The only address that may be the vehicle's; None for any.
 
@@ -56,21 +63,22 @@ class VehiclePeer:
 
     """
 
-    def __init__(self, vehicle: Vehicle, now: float, expected: Sender | None = None) -> None:
+    def __init__(
+        self, vehicle: Vehicle, now: float, tell: Callable[[str], None], expected: Sender | None
+    ) -> None:
         self._vehicle = vehicle
         self._expected = expected
         self.sender: Sender | None = None
         self.dropped = 0
-        self._heard = now
+        self._tell = tell
         self._two = f"two vehicles with system {vehicle.system}"
         # A rival's last heartbeat, in heard seconds; None: it has the vehicle's own address.
         self._rivals: dict[Sender | None, float] = {}
-        self._heard_clock = HeardClock()
+        self._heard_clock = HeardClock(now)
         self._refused = self._contradicted = -math.inf
         self._faulty: Sender | None = None
         self._clock: tuple[int, float] | None = None
         self._set_back = self._addresses = False
-        self._notices: list[str] = []
         self._noted: dict[str, float] = {}
 
     def expect(self, sender: Sender | None) -> None:
@@ -100,12 +108,7 @@ class VehiclePeer:
 
     def is_silent(self, now: float) -> bool:
         """Return whether its last heartbeat is too long ago."""
-        return now - self._heard > SILENT_SECONDS
-
-    def take_notices(self) -> list[str]:
-        """Return, once, the lines for people."""
-        notices, self._notices = self._notices, []
-        return notices
+        return now - self._heard_clock.last > SILENT_SECONDS
 
     def admit(self, message: Message, sender: Sender, now: float, *, busy: bool) -> bool:
         """Return whether a message comes from the vehicle's address, and may be believed.
@@ -123,37 +126,59 @@ class VehiclePeer:
         """
         named = (message.get_srcSystem(), message.get_srcComponent())
         is_its = named == (self._vehicle.system, self._vehicle.component)
-        beats = is_its and message.get_type() == "HEARTBEAT"
-        kind = describe_other_kind(message) if beats else ""
-        # A vehicle of another kind at another address takes the place of nobody.
-        is_stranger = bool(kind) and self.sender not in (None, sender)
-        if is_stranger or not self._may_be(sender, now, busy=busy):
-            if beats and not kind and self._is_named(sender):
-                self._note_rival(sender)
-            elif beats:
-                notice = f"{self._two}{name_address(sender)} is ignored"
-                self._note("ignored", notice, now)
-            self.dropped += 1
-            return False
-        if kind:
-            if not self.find_fault(now):
-                self._notices.append(f"vehicle is no ArduSub but {kind}; nothing is sent")
-            self._faulty, self._refused, self.sender = sender, now, None
-        elif beats and not (sender == self._faulty and self.find_fault(now)):
-            if sender != self.sender:
-                if self._rivals.pop(sender, None) is not None:
-                    self._rivals[self.sender] = self._heard_clock.seconds
-                self.sender, self._clock, self._addresses = sender, None, False
-            self._heard = now
-            self._heard_clock.hear(now)
-            least = self._heard_clock.seconds - RIVAL_SECONDS
-            self._rivals = {each: last for each, last in self._rivals.items() if last >= least}
+        if is_its and message.get_type() == "HEARTBEAT":
+            kind = describe_other_kind(message)
+            match ("other" if kind else "sub", self._find_place(sender, now, busy=busy)):
+                case ("sub", "own" | "free"):
+                    self._believe(sender, now)
+                case ("sub", "taken"):
+                    self._note_rival(sender)
+                case ("other", "own"):
+                    self._refuse(sender, kind, now)
+                case _:
+                    notice = f"{self._two}{name_address(sender)} is ignored"
+                    self._note("ignored", notice, now)
         if sender == self.sender:
-            self._watch(message, now, is_its=is_its)
+            if named == (self._vehicle.system, OUR_COMPONENT):
+                self._note("robot", "another robot commands this vehicle too", now)
+            elif is_its and message.get_type() == "SYSTEM_TIME":
+                self._watch_clock(message.time_boot_ms, now)
         admitted = sender == self.sender and self.is_proven(now)
         admitted = admitted and not (is_its and self._is_for_another(message))
         self.dropped += not admitted
         return admitted
+
+    def _find_place(self, sender: Sender, now: float, *, busy: bool) -> Place:
+        """Return whether an address is, or may become, that of the vehicle."""
+        named = self._vehicle.address
+        if self._expected is not None:
+            is_named = sender == self._expected
+        else:
+            is_named = named is None or sender[:1] == (str(named),)
+        if not is_named:
+            return "foreign"
+        if self.sender is None or sender == self.sender:
+            return "own"
+        may_move = not busy or sender[:1] == self.sender[:1]
+        return "free" if may_move and self.is_silent(now) else "taken"
+
+    def _believe(self, sender: Sender, now: float) -> None:
+        """Take an address for the vehicle's, unless it has just sent as another kind."""
+        if sender == self._faulty and self.find_fault(now):
+            return
+        if sender != self.sender:
+            if self._rivals.pop(sender, None) is not None:
+                self._rivals[self.sender] = self._heard_clock.seconds
+            self.sender, self._clock, self._addresses = sender, None, False
+        self._heard_clock.hear(now)
+        least = self._heard_clock.seconds - RIVAL_SECONDS
+        self._rivals = {each: last for each, last in self._rivals.items() if last >= least}
+
+    def _refuse(self, sender: Sender, kind: str, now: float) -> None:
+        """Leave a vehicle that is no submarine."""
+        if not self.find_fault(now):
+            self._tell(f"vehicle is no ArduSub but {kind}; nothing is sent")
+        self._faulty, self._refused, self.sender = sender, now, None
 
     def _is_for_another(self, message: Message) -> bool:
         """Return whether a vehicle that addresses its acknowledgements gives this one no address.
@@ -165,42 +190,19 @@ class VehiclePeer:
         self._addresses |= message.target_system != 0
         return self._addresses and message.target_system == 0
 
-    def _is_named(self, sender: Sender) -> bool:
-        """Return whether neither the link nor the table names another address."""
-        if self._expected is not None:
-            return sender == self._expected
-        named = self._vehicle.address
-        return named is None or sender[:1] == (str(named),)
-
-    def _may_be(self, sender: Sender, now: float, *, busy: bool) -> bool:
-        """Return whether an address is, or may become, that of the vehicle."""
-        if not self._is_named(sender) or self._expected is not None:
-            return self._is_named(sender)
-        if self.sender is None or sender == self.sender:
-            return True
-        return self.is_silent(now) and (not busy or sender[:1] == self.sender[:1])
-
     def _note_rival(self, sender: Sender | None) -> None:
         """Keep a second submarine with the same ids, and announce it once while it is heard."""
         if sender not in self._rivals:
             if len(self._rivals) == MOST_RIVALS:
                 return
-            self._notices.append(f"{self._two}, orders wait{name_address(sender)}")
+            self._tell(f"{self._two}, orders wait{name_address(sender)}")
         self._rivals[sender] = self._heard_clock.seconds
 
     def _note(self, kind: str, notice: str, now: float) -> None:
         """Announce what is heard again and again, once for each kind while it is heard."""
         if now - self._noted.get(kind, -math.inf) > AGAIN_SECONDS:
-            self._notices.append(notice)
+            self._tell(notice)
         self._noted[kind] = now
-
-    def _watch(self, message: Message, now: float, *, is_its: bool) -> None:
-        """Detect another robot, and a second vehicle, behind the vehicle's address."""
-        named = (message.get_srcSystem(), message.get_srcComponent())
-        if named == (self._vehicle.system, OUR_COMPONENT):
-            self._note("robot", "another robot commands this vehicle too", now)
-        elif is_its and message.get_type() == "SYSTEM_TIME":
-            self._watch_clock(message.time_boot_ms, now)
 
     def _watch_clock(self, uptime: int, now: float) -> None:
         """Detect two vehicles behind one address: their clocks jump back and forth.

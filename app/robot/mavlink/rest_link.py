@@ -65,9 +65,8 @@ class RestLink:
 
     def __init__(self, address: str, system: int, component: int) -> None:
         place = urlsplit(address)
-        kind = (
-            http.client.HTTPSConnection if place.scheme == "https" else http.client.HTTPConnection
-        )
+        is_secure = place.scheme == "https"
+        kind = http.client.HTTPSConnection if is_secure else http.client.HTTPConnection
         if not place.hostname:
             raise ValueError("no host")
         self._connection = kind(place.hostname, place.port, timeout=ANSWER_SECONDS)
@@ -84,10 +83,8 @@ class RestLink:
 
     def send(self, message: Message, to: Sender | None) -> None:
         """Send a message; `to` is the server."""
-        requests = message.get_type() == "COMMAND_LONG" and (
-            message.command == mavlink.MAV_CMD_SET_MESSAGE_INTERVAL
-        )
-        if requests:
+        is_command = message.get_type() == "COMMAND_LONG"
+        if is_command and message.command == mavlink.MAV_CMD_SET_MESSAGE_INTERVAL:
             self._poll(mavlink.mavlink_map[int(message.param1)].msgname)
         header = {"system_id": self._system, "component_id": OUR_COMPONENT, "sequence": 0}
         body = json.dumps({"header": header, "message": to_json(message)}, allow_nan=False)

@@ -30,7 +30,7 @@ from app.recognition import Language
 from app.recognition.errors import VehicleError
 from app.recognition.phrases.grammar import Grammar
 from app.recognition.phrases.parser import PhraseParser
-from app.robot.commands.answers import PULSES, Answer
+from app.robot.commands.replies import Reply
 from app.robot.commands.rules import (
     CONFIRM_SECONDS,
     EMERGENCY_AGE_SECONDS,
@@ -207,8 +207,8 @@ class Vehicle(_Entry):
 Pulses = Annotated[int, Field(ge=1, le=9)]
 
 
-class Answers(_Entry):
-    """How the vehicle answers the diver; see `app.robot.commands.answers`.
+class Replies(_Entry):
+    """How the vehicle replies to the diver; see `app.robot.commands.replies`.
 
     Attributes
     ----------
@@ -216,30 +216,30 @@ class Answers(_Entry):
         What shows the pulses: ``lights`` blink, ``tilt`` nods the camera. The camera that films the
         diver must be another one, because its picture would move.
     listening, repeat, one_of_two, done, refused
-        Number of pulses of each answer, all different.
+        Number of pulses of each reply, all different.
 
     """
 
     show: Annotated[tuple[Literal["lights", "tilt"], ...], Field(min_length=1, strict=False)]
-    listening: Pulses = PULSES[Answer.listening]
-    repeat: Pulses = PULSES[Answer.repeat]
-    one_of_two: Pulses = PULSES[Answer.one_of_two]
-    done: Pulses = PULSES[Answer.done]
-    refused: Pulses = PULSES[Answer.refused]
+    listening: Pulses = Reply.listening.pulses
+    repeat: Pulses = Reply.repeat.pulses
+    one_of_two: Pulses = Reply.one_of_two.pulses
+    done: Pulses = Reply.done.pulses
+    refused: Pulses = Reply.refused.pulses
 
     @model_validator(mode="after")
     def _check(self) -> Self:
         """Refuse what a diver could not tell apart."""
-        counts = [self.count_pulses(answer) for answer in Answer]
+        counts = [self.count_pulses(reply) for reply in Reply]
         if twice := sorted({each for each in counts if counts.count(each) > 1}):
             raise ValueError(f"two answers have {twice[0]} pulses; give each its own number")
         if len(set(self.show)) < len(self.show):
             raise ValueError(f"show names {self.show[0]!r} twice; name it once")
         return self
 
-    def count_pulses(self, answer: Answer) -> int:
-        """Return the number of blinks or nods of an answer."""
-        return int(getattr(self, answer.value))
+    def count_pulses(self, reply: Reply) -> int:
+        """Return the number of blinks or nods of a reply."""
+        return int(getattr(self, reply.value))
 
 
 class VehicleTable(_Entry):
@@ -261,7 +261,7 @@ class VehicleTable(_Entry):
     vehicle
         Address of the vehicle, and its limits.
     answers
-        How it answers the diver; None: it does not.
+        How it replies to the diver; None: it does not.
 
     """
 
@@ -277,7 +277,7 @@ class VehicleTable(_Entry):
     emergency_seconds: Annotated[float, Field(ge=0.1, le=60)] = EMERGENCY_AGE_SECONDS
     emergency_confidence: Annotated[float, Field(ge=0, le=1)] = EMERGENCY_CONFIDENCE
     vehicle: Vehicle = Vehicle()
-    answers: Answers | None = None
+    answers: Replies | None = None
 
     @model_validator(mode="after")
     def _check(self) -> Self:
@@ -355,10 +355,12 @@ class VehicleTable(_Entry):
             raise VehicleError(f"no depth: {shown!r}, of 0 to {self.vehicle.deepest:g} m")
         return Depth(do="depth", metres=metres)
 
-    def list_faults(self, language: Language, *, spots: bool) -> Iterator[tuple[bool, str]]:
+    def list_faults(
+        self, language: Language, *, without_salutes: bool = False
+    ) -> Iterator[tuple[bool, str]]:
         """Yield what is wrong with the table in a language, and whether nothing may be commanded.
 
-        Without triggers (`spots`) a movement would confirm itself: only messages may act. An
+        Without triggers a movement would confirm itself: only messages may act. An
         emergency that begins a message would be obeyed with each one. What is only in vain is no
         danger: what the language lacks, and a gesture that counts within phrases alone.
         """
@@ -366,6 +368,7 @@ class VehicleTable(_Entry):
         phrases = [phrase.name for phrase in grammar.phrases]
         words = {use.label for use in grammar.uses()} if phrases else set()
         alone = sorted({*self.gestures, *self.emergency} - (words - {*self.emergency}))
+        spots = without_salutes or language.trigger.spots
         if spots and (alone or not phrases):
             why = f"{', '.join(alone)} would act alone" if phrases else "there are no phrases"
             yield True, f"no commands without salutes: {why}"

@@ -21,7 +21,7 @@ from cyclonedds.util import duration
 
 from app.recognition.errors import PublishError
 from app.robot import events
-from app.robot.commands.answers import PULSE_SECONDS
+from app.robot.commands.replies import PULSE_SECONDS
 from app.robot.event_messages import format_line
 from app.robot.publishing.dds_messages import (
     Answer,

@@ -198,8 +198,7 @@ class RobotFiles:
         if table is not None and language is None:
             yield "there is no language yet: upload one as well"
         elif table is not None and language is not None:
-            spots = language.trigger.spots
-            for _, fault in table.list_faults(language.recognizer.language, spots=spots):
+            for _, fault in table.list_faults(language.recognizer.language):
                 yield f"vehicle table: {fault}"
 
     def _compare_languages(self, content: bytes) -> Iterator[str]:

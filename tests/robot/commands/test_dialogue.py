@@ -10,7 +10,6 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.robot.commands.answers import Answer, find_phrase_answer
 from app.robot.commands.dialogue import (
     CommandDialogue,
     CommandTable,
@@ -18,6 +17,7 @@ from app.robot.commands.dialogue import (
     RecognizedGesture,
     RecognizedPhrase,
 )
+from app.robot.commands.replies import Reply, find_phrase_reply
 from app.robot.commands.rules import EMERGENCY_LIMIT, Rules
 
 TABLE = CommandTable("language", {"circle": "photo", "line": "surface", "peak": "follow"})
@@ -56,56 +56,56 @@ def commands_of(*gestures: RecognizedGesture, rules: Rules = RULES) -> list[str 
 @pytest.mark.parametrize(
     ("gestures", "answers"),
     [
-        ([shown("circle", 1), shown("circle", 6)], [Answer.repeat, None]),
+        ([shown("circle", 1), shown("circle", 6)], [Reply.repeat, None]),
         ([shown("line", 1)], [None]),
-        ([shown("circle", 1), shown("cross", 6)], [Answer.repeat, Answer.done]),
-        ([between("circle", "peak", 1)], [Answer.one_of_two]),
+        ([shown("circle", 1), shown("cross", 6)], [Reply.repeat, Reply.done]),
+        ([between("circle", "peak", 1)], [Reply.one_of_two]),
         (
             [between("circle", "peak", 1), between("circle", "peak", 6)],
-            [Answer.one_of_two, Answer.refused],
+            [Reply.one_of_two, Reply.refused],
         ),
-        ([shown(None, 1), shown("wave", 6), shown("circle", 9, 0.1)], [Answer.refused] * 3),
+        ([shown(None, 1), shown("wave", 6), shown("circle", 9, 0.1)], [Reply.refused] * 3),
         # What is the same take again, or of somebody else, is no answer to this diver.
         (
             [shown("circle", 6), shown("circle", 6), shown("line", 7, language="other")],
-            [Answer.repeat, None, None],
+            [Reply.repeat, None, None],
         ),
     ],
 )
 def test_what_a_diver_sees_of_a_gesture(
-    gestures: list[RecognizedGesture], answers: list[Answer | None]
+    gestures: list[RecognizedGesture], answers: list[Reply | None]
 ) -> None:
     made = dialogue()
-    assert [made.decide(gesture, gesture.stamp).answer for gesture in gestures] == answers
+    assert [made.decide(gesture, gesture.stamp).reply for gesture in gestures] == answers
 
 
 @pytest.mark.parametrize(
     ("kind", "label", "pair", "answer"),
     [
-        ("continues", "circle", None, Answer.listening),
-        ("repeat", None, None, Answer.refused),
-        ("repeat", None, ("circle", "peak"), Answer.one_of_two),
-        ("cancelled", "cross", None, Answer.done),
-        ("cancelled", None, None, Answer.refused),  # by the robot, which has lost it
-        ("unexpected", "peak", None, Answer.refused),
-        ("timed_out", None, None, Answer.refused),
-        ("outside", "peak", None, Answer.refused),
+        ("continues", "circle", None, Reply.listening),
+        ("repeat", None, None, Reply.refused),
+        ("repeat", None, ("circle", "peak"), Reply.one_of_two),
+        ("cancelled", "cross", None, Reply.done),
+        ("cancelled", None, None, Reply.refused),  # by the robot, which has lost it
+        ("unexpected", "peak", None, Reply.refused),
+        ("timed_out", None, None, Reply.refused),
+        ("outside", "peak", None, Reply.refused),
         ("outside", None, None, None),
     ],
 )
 def test_what_a_diver_sees_of_a_part_of_a_message(
-    kind: str, label: str | None, pair: tuple[str, str] | None, answer: Answer | None
+    kind: str, label: str | None, pair: tuple[str, str] | None, answer: Reply | None
 ) -> None:
-    assert find_phrase_answer(kind, label, pair) is answer
+    assert find_phrase_reply(kind, label, pair) is answer
 
 
 def test_two_gestures_without_a_command_are_not_asked_about() -> None:
     decision = dialogue().decide(between("wave", "zigzag", 1), 1)
-    assert (decision.reason, decision.answer) == (
+    assert (decision.reason, decision.reply) == (
         "'wave' and 'zigzag' have no command",
-        Answer.refused,
+        Reply.refused,
     )
-    assert dialogue().decide(between("wave", "circle", 1), 1).answer is Answer.one_of_two
+    assert dialogue().decide(between("wave", "circle", 1), 1).reply is Reply.one_of_two
 
 
 def test_a_gesture_is_confirmed_by_showing_it_again() -> None:

@@ -19,7 +19,7 @@ from app.robot import (
     TakeRejected,
     TriggerListener,
 )
-from app.robot.commands.answers import Answer, find_phrase_answer
+from app.robot.commands.replies import Reply, find_phrase_reply
 from tests.api.recordings import recording_of
 from tests.recognition.held_takes import FIST, FLAT, between_salutes, follow, hold
 from tests.robot.languages import ambiguous, language_of, moments_of, run_listener, spoken
@@ -144,7 +144,7 @@ def test_a_message_does_not_outlive_its_source_stream_or_language(how: str, reas
     (heard,) = [event.phrase for event in emitted if isinstance(event, PhraseHeard)]
     assert (heard.reason, heard.label) == (reason, None)
     assert heard.text.startswith("circle: ")
-    assert find_phrase_answer(heard.kind, heard.label, heard.pair) is Answer.refused
+    assert find_phrase_reply(heard.kind, heard.label, heard.pair) is Reply.refused
 
 
 def test_a_stream_that_begins_anew_cancels_a_message() -> None:

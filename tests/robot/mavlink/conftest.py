@@ -2,10 +2,10 @@
 
 import pytest
 
-from app.robot.mavlink import bridge
+from app.robot.mavlink import talk
 
 
 @pytest.fixture
 def closes_soon(monkeypatch: pytest.MonkeyPatch) -> None:
     """Let a bridge over real sockets give up an order that nobody answers soon after its end."""
-    monkeypatch.setattr(bridge, "CLOSE_SECONDS", 0.2)
+    monkeypatch.setattr(talk, "CLOSE_SECONDS", 0.2)

@@ -27,7 +27,7 @@ from app.robot import (
     TakeRejected,
     TriggerListener,
 )
-from app.robot.mavlink import bridge
+from app.robot.mavlink import bridge, talk
 from app.robot.mavlink.bridge import MavlinkBridge
 from app.robot.mavlink.links import VehicleLink, open_link
 from app.robot.mavlink.table import VehicleTable
@@ -111,6 +111,7 @@ class Diver:
         link = link or open_link(address, table.vehicle.system, table.vehicle.component)
         clock: Callable[[], float] = lambda: self.time + self.delay  # noqa: E731
         self.bridge = MavlinkBridge(table, link, crew, self.lines.put, clock, memory=memory)
+        self.bridge.start()
         self.bridge.publish(build_language_changed(0.0, crew()))
 
     def show(
@@ -168,10 +169,18 @@ class Diver:
         bridge = self.bridge
         closes = threading.Thread(target=bridge.close)
         closes.start()
-        bridge._closing.wait()
-        while self._simulated is not None and bridge._thread.is_alive():
+        bridge._talk.closing.wait()
+        while self._simulated is not None and bridge._talk._thread.is_alive():
             self._simulated.wait(STEP)
         closes.join()
+
+
+@contextmanager
+def talking(opened: MavlinkBridge) -> Iterator[MavlinkBridge]:
+    """Let a bridge talk with its vehicle until the end of the block."""
+    opened.start()
+    with closing(opened):
+        yield opened
 
 
 def wait_until(happens: Callable[[], bool]) -> None:
@@ -199,7 +208,9 @@ def diving(
         if scheme is None:
             vehicle = SimulatedVehicle(**settings)
             patched = opened.enter_context(pytest.MonkeyPatch.context())
-            patched.setattr(bridge, "clock", SimpleNamespace(monotonic=lambda: vehicle.now))
+            for module in (bridge, talk):
+                clock = SimpleNamespace(monotonic=lambda: vehicle.now)
+                patched.setattr(module, "clock", clock)
             diver = Diver(vehicle, "", table, cast("VehicleLink", vehicle), memory)
         else:
             real = opened.enter_context(sailing(kind=kind, **settings))

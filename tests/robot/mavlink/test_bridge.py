@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import queue
 import random
-from contextlib import closing
 from dataclasses import replace
 
 import pytest
@@ -26,13 +25,24 @@ from app.robot import (
     TriggerListener,
 )
 from app.robot.mavlink import peer
-from app.robot.mavlink.bridge import TEXT_BYTES, MavlinkBridge, fit_text
+from app.robot.mavlink.bridge import MavlinkBridge
 from app.robot.mavlink.links import open_link
 from app.robot.mavlink.table import VehicleTable
+from app.robot.mavlink.talk import TEXT_BYTES, fit_text
 from app.robot.runtime import build_language_changed
 from tests.api.recordings import recording_of
 from tests.robot.languages import language_of, run_listener, spoken
-from tests.robot.mavlink.diver import DOES, DONE, TABLE, WAIT, a_take, crew, diving, wait_until
+from tests.robot.mavlink.diver import (
+    DOES,
+    DONE,
+    TABLE,
+    WAIT,
+    a_take,
+    crew,
+    diving,
+    talking,
+    wait_until,
+)
 from tests.robot.mavlink.vehicle import sailing
 
 
@@ -161,7 +171,7 @@ def test_a_pilot_who_changes_the_mode_ends_the_order(label: str) -> None:
 @pytest.mark.withstands(row="H35")
 def test_a_disarmed_vehicle_is_told_and_never_done() -> None:
     with diving(armed=False) as diver:
-        diver.wait_until(lambda: diver.bridge._peer.sender is not None)
+        diver.wait_until(lambda: diver.bridge._talk.peer.sender is not None)
         diver.wait(0.1)
         for label, words in (("stop", "hold"), ("deep", "depth 5 m")):
             diver.confirm(label)
@@ -195,14 +205,14 @@ def test_a_robot_that_ends_lets_go_of_a_vehicle_that_does_not_answer(stopped: bo
         diver.wait_for("EMERGENCY")
         diver.bridge.publish(SourceEnded(diver.time, 100, 0, stopped))
         diver.close()
-        assert not diver.bridge._thread.is_alive()
+        assert not diver.bridge._talk._thread.is_alive()
         reason = "robot is stopped" if stopped else "robot has ended"
         assert diver.wait_for("NOT DONE") == f"NOT DONE, {reason}: surface"
 
 
 def test_what_a_diver_must_know_of_the_robot_is_on_the_vehicles_displays() -> None:
     with diving() as diver:
-        diver.wait_until(lambda: diver.bridge._peer.sender is not None)
+        diver.wait_until(lambda: diver.bridge._talk.peer.sender is not None)
         diver.bridge.publish(RecognitionReady(1.0))
         diver.bridge.publish(FrameRateChanged(6.0, 2.0, False))
         diver.bridge.publish(OutputFailed(7.0, "stdout", "No space left on device"))
@@ -219,7 +229,7 @@ def test_without_salutes_a_new_language_without_phrases_commands_nothing() -> No
     with sailing() as vehicle:
         link = open_link(f"udpout:127.0.0.1:{vehicle.port}", 1, 1)
         opened = MavlinkBridge(table, link, crew, lines.put, without_salutes=True)
-        with closing(opened):
+        with talking(opened):
             opened.publish(build_language_changed(0.0, crew()))
             assert lines.get(timeout=WAIT).startswith("no commands without salutes: ")
             opened.publish(replace(a_take(), label="help", time=5.0, sha256=crew().sha256))
@@ -307,7 +317,7 @@ def test_a_message_is_obeyed_with_its_values_within_the_limits(metres: int) -> N
     lines: list[str] = []
     with sailing() as vehicle:
         link = open_link(f"udpout:127.0.0.1:{vehicle.port}", 1, 1)
-        with closing(MavlinkBridge(table, link, lambda: language, lines.append)) as opened:
+        with talking(MavlinkBridge(table, link, lambda: language, lines.append)) as opened:
             for event in (build_language_changed(0.0, language), *events):
                 opened.publish(event)
     assert vehicle.obeyed == (["ALT_HOLD", "depth 2"] if metres == 2 else [])
@@ -330,8 +340,8 @@ def test_the_cancel_of_the_phrases_drops_an_order_unless_it_is_an_emergency(
     with sailing() as vehicle:
         link = open_link(f"udpout:127.0.0.1:{vehicle.port}", 1, 1)
         parsed = VehicleTable.model_validate(table)
-        with closing(MavlinkBridge(parsed, link, lambda: language, lines.append)) as opened:
-            wait_until(lambda: opened._peer.sender is not None)
+        with talking(MavlinkBridge(parsed, link, lambda: language, lines.append)) as opened:
+            wait_until(lambda: opened._talk.peer.sender is not None)
             vehicle.loss = 1.0
             for event in (build_language_changed(0.0, language), *events):
                 opened.publish(event)

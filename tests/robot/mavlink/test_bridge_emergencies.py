@@ -2,21 +2,21 @@
 
 from __future__ import annotations
 
-from contextlib import ExitStack, closing
+from contextlib import ExitStack
 
 import pytest
 
 pytest.importorskip("pymavlink", reason="needs the extra mavlink")
 
 from app.robot import TriggerListener
-from app.robot.commands.answers import PULSES, Answer
+from app.robot.commands.replies import Reply
 from app.robot.mavlink.bridge import MavlinkBridge
 from app.robot.mavlink.links import open_link
 from app.robot.mavlink.table import VehicleTable
 from app.robot.runtime import build_language_changed
 from tests.api.recordings import recording_of
 from tests.robot.languages import run_listener, spoken
-from tests.robot.mavlink.diver import DONE, TABLE, diving, wait_until
+from tests.robot.mavlink.diver import DONE, TABLE, diving, talking, wait_until
 from tests.robot.mavlink.mavlink2rest import serving
 from tests.robot.mavlink.vehicle import sailing
 
@@ -102,13 +102,13 @@ def test_circle_or_square_is_asked_of_the_diver_whose_answer_is_obeyed(
             "tcp": f"tcp:127.0.0.1:{vehicle.port}",
         }.get(link) or opened.enter_context(serving(vehicle.port))
         bridge = MavlinkBridge(table, open_link(address, 1, 1), lambda: language, lines.append)
-        with closing(bridge):
+        with talking(bridge):
             wait_until(lambda: bool(vehicle.reports) and bridge._facts.function == 0)
             bridge.publish(build_language_changed(0.0, language))
             for event in first:
                 bridge.publish(event)
-            wait_until(lambda: len(vehicle.shown) == 2 * PULSES[Answer.one_of_two])
-            wait_until(lambda: bridge.has_answered)
+            wait_until(lambda: len(vehicle.shown) == 2 * Reply.one_of_two.pulses)
+            wait_until(lambda: bridge.has_replied)
             assert any(line.endswith("? show it again") for line in lines)
             assert [each for each in vehicle.obeyed if not each.startswith("servo")] == []
             for event in shown[len(first) :]:

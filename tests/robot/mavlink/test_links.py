@@ -11,8 +11,8 @@ pytest.importorskip("pymavlink", reason="needs the extra mavlink")
 
 from app.recognition.errors import VehicleError
 from app.robot.mavlink import links
-from app.robot.mavlink.bridge import build_heartbeat
 from app.robot.mavlink.links import DatagramLink, StreamLink, open_link
+from app.robot.mavlink.talk import build_heartbeat
 
 
 @pytest.mark.parametrize(

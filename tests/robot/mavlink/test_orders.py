@@ -197,7 +197,7 @@ def test_it_is_repeated_until_it_is_given_up() -> None:
     assert desk.check_deadline(10.0) is None
     ended = desk.check_deadline(10.1)
     assert isinstance(ended, Outcome)
-    assert (ended.kind, ended.sent) == ("unanswered", "DO_SET_MODE ALT_HOLD was sent 2 times")
+    assert (ended.kind, ended.sent) == ("unproven", "DO_SET_MODE ALT_HOLD was sent 2 times")
     assert desk.list_due(10.2) == ()
 
 
@@ -279,7 +279,7 @@ def test_of_a_mode_that_is_accepted_and_never_shown_it_is_said_what_is_shown() -
         if tick % 10 == 0 and (ended := desk.hear(heartbeat(mavlink.SUB_MODE_MANUAL), now)):
             break
     assert ended is not None
-    assert (ended.kind, ended.answer) == ("stopped", "stays in MANUAL")
+    assert (ended.kind, ended.reason) == ("stopped", "stays in MANUAL")
 
 
 def test_of_a_cancelled_order_it_is_said_whether_the_vehicle_may_have_got_it() -> None:
@@ -354,7 +354,7 @@ def test_what_comes_next_in_an_emergency_is_tried_as_soon_as_one_is_refused() ->
     refusal = answer(result=mavlink.MAV_RESULT_FAILED)
     told = desk.hear(refusal, 0.1)
     assert told is not None
-    assert (told.kind, told.answer) == ("waits", "refused (FAILED), now hold")
+    assert (told.kind, told.reason) == ("waits", "refused (FAILED), now hold")
     assert asked(desk, 0.1) == [HOLD]
     assert kinds(desk, answer(), heartbeat(HOLD)) == ["done"]
 

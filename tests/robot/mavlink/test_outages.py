@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import ast
 import math
-from contextlib import closing
 from itertools import pairwise
 from pathlib import Path
 from typing import Any, Literal
@@ -16,14 +15,14 @@ pytest.importorskip("pymavlink", reason="needs the extra mavlink")
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from app.robot import SourceEnded
-from app.robot.commands.answers import Answer
+from app.robot.commands.replies import Reply
 from app.robot.mavlink import patterns
 from app.robot.mavlink.actions import CommandStep, VehicleFacts
 from app.robot.mavlink.bridge import MavlinkBridge
 from app.robot.mavlink.links import open_link
-from app.robot.mavlink.patterns import AnswerDesk
-from app.robot.mavlink.table import Answers, Vehicle, VehicleTable
-from tests.robot.mavlink.diver import TABLE, crew, diving
+from app.robot.mavlink.patterns import ReplyDesk
+from app.robot.mavlink.table import Replies, Vehicle, VehicleTable
+from tests.robot.mavlink.diver import TABLE, crew, diving, talking
 from tests.robot.mavlink.test_patterns import LIGHTS, answering
 from tests.robot.mavlink.vehicle import sailing
 
@@ -35,7 +34,7 @@ PILOT = {"lights": 1655.0, "tilt": -5.0}
 
 
 class Dive:
-    """An answer desk and what it sets, in simulated time; a link that can be lost.
+    """A reply desk and what it sets, in simulated time; a link that can be lost.
 
     Attributes
     ----------
@@ -48,7 +47,9 @@ class Dive:
 
     def __init__(self, shown: Shown) -> None:
         self.shown = shown
-        self.desk = AnswerDesk(Answers(show=(shown,)), Vehicle())
+        facts = VehicleFacts(Vehicle())
+        facts.function = 0
+        self.desk = ReplyDesk(Replies(show=(shown,)), Vehicle(), facts, None, print)
         self.now = 0.0
         self.value = BEFORE[shown]
         self.linked = True
@@ -86,7 +87,7 @@ class Dive:
 
     def begin_pulse(self) -> None:
         """Give an answer, and wait until its first pulse is shown."""
-        self.desk.give(Answer.refused, self.now)
+        self.desk.give(Reply.refused, self.now)
         while self.value == BEFORE[self.shown]:
             self.wait(STEP)
 
@@ -114,7 +115,7 @@ def test_what_was_before_a_pattern_is_restored_after_any_outage(
     elif state == "order":
         dive.order()
     elif state == "emergency":
-        dive.desk.give(Answer.done, dive.now, emergency=True)
+        dive.desk.give(Reply.done, dive.now, emergency=True)
     dive.wait(seconds)
     assert dive.value != BEFORE[shown]
     dive.linked = True
@@ -215,7 +216,7 @@ def test_a_robot_that_is_killed_in_a_pulse_restores_the_lights_at_its_next_start
     with sailing(lights=1100.0 if pilot is None else pilot) as vehicle:
         link = open_link(f"udpout:127.0.0.1:{vehicle.port}", 1, 1)
         lines: list[str] = []
-        with closing(MavlinkBridge(table, link, crew, lines.append, memory=file)):
+        with talking(MavlinkBridge(table, link, crew, lines.append, memory=file)):
             diver.wait_until(lambda: not file.exists())
             diver.wait(0.5)
             assert vehicle.pulse == (1800 if pilot is None else pilot)
@@ -259,7 +260,7 @@ def test_a_pilot_sets_lights_a_little_less_bright_than_the_pulse() -> None:
     dive = Dive("lights")
     dive.value = 1100.0
     dive.wait(6)
-    dive.desk.give(Answer.refused, dive.now)
+    dive.desk.give(Reply.refused, dive.now)
     while dive.value == 1100:
         dive.wait(STEP)
     dive.wait(STEP)

@@ -16,7 +16,7 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from app.recognition.recording.segmentation import TakeState
 from app.robot import RecognitionReady, SourceEnded, StateChanged
-from app.robot.commands.answers import PULSES, Answer
+from app.robot.commands.replies import Reply
 from app.robot.mavlink import patterns
 from app.robot.mavlink.table import VehicleTable
 from tests.robot.mavlink.diver import TABLE, Diver, diving
@@ -39,27 +39,27 @@ def answering(changes: Mapping[str, object] = LIGHTS, **settings: Any) -> Iterat
 def wait_for_pattern(diver: Diver, pulses: int) -> None:
     """Wait until a pattern is over and what was before is restored."""
     diver.wait_until(lambda: len(diver.vehicle.shown) >= 2 * pulses)
-    diver.wait_until(lambda: diver.bridge.has_answered)
+    diver.wait_until(lambda: diver.bridge.has_replied)
 
 
 SHOWINGS = {
-    Answer.listening: lambda diver: diver.bridge.publish(RecognitionReady(1.0)),
-    Answer.repeat: lambda diver: diver.show("stop"),
-    Answer.one_of_two: lambda diver: diver.show(None, pair=("stop", "up")),
-    Answer.done: lambda diver: diver.show("help"),
-    Answer.refused: lambda diver: diver.show(None),
+    Reply.listening: lambda diver: diver.bridge.publish(RecognitionReady(1.0)),
+    Reply.repeat: lambda diver: diver.show("stop"),
+    Reply.one_of_two: lambda diver: diver.show(None, pair=("stop", "up")),
+    Reply.done: lambda diver: diver.show("help"),
+    Reply.refused: lambda diver: diver.show(None),
 }
 
 
-@pytest.mark.parametrize("answer", Answer, ids=lambda answer: answer.value)
-def test_each_answer_is_shown_once_within_half_a_second(answer: Answer) -> None:
+@pytest.mark.parametrize("answer", Reply, ids=lambda answer: answer.value)
+def test_each_answer_is_shown_once_within_half_a_second(answer: Reply) -> None:
     with answering() as diver:
         began = diver.vehicle._now()
         SHOWINGS[answer](diver)
-        wait_for_pattern(diver, PULSES[answer])
+        wait_for_pattern(diver, answer.pulses)
         diver.wait(0.5)
         levels = [value for _, _, value in diver.vehicle.shown]
-        assert levels == [BRIGHT, LOW] * PULSES[answer]
+        assert levels == [BRIGHT, LOW] * answer.pulses
         times = [moment for moment, _, _ in diver.vehicle.shown]
         assert times[0] - began < 0.5
         # Fewer than three flashes a second, each of three frames at 15 frames a second.
@@ -70,24 +70,24 @@ def test_each_answer_is_shown_once_within_half_a_second(answer: Answer) -> None:
 def test_lights_that_are_on_blink_off_and_keep_their_brightness() -> None:
     with answering(lights=1700.0) as diver:
         diver.show(None)
-        wait_for_pattern(diver, PULSES[Answer.refused])
-    assert [value for _, _, value in diver.vehicle.shown] == [LOW, 1700] * PULSES[Answer.refused]
+        wait_for_pattern(diver, Reply.refused.pulses)
+    assert [value for _, _, value in diver.vehicle.shown] == [LOW, 1700] * Reply.refused.pulses
 
 
 def test_lights_with_a_limit_of_their_own_blink_and_are_restored() -> None:
     with answering(brightest=1500.0) as diver:
         diver.show("stop")
-        wait_for_pattern(diver, PULSES[Answer.repeat])
+        wait_for_pattern(diver, Reply.repeat.pulses)
         assert diver.vehicle.pulse == LOW
-    assert [value for _, _, value in diver.vehicle.shown] == [1500, LOW] * PULSES[Answer.repeat]
+    assert [value for _, _, value in diver.vehicle.shown] == [1500, LOW] * Reply.repeat.pulses
 
 
 def test_a_camera_nods_and_looks_where_it_looked_before() -> None:
     with answering({"answers": {"show": ["tilt"]}}, yaw=-25.0) as diver:
         diver.show("stop")
-        wait_for_pattern(diver, PULSES[Answer.repeat])
+        wait_for_pattern(diver, Reply.repeat.pulses)
     shown = [round(value) for _, _, value in diver.vehicle.shown]
-    assert shown == [-12, 0] * PULSES[Answer.repeat]
+    assert shown == [-12, 0] * Reply.repeat.pulses
     assert diver.vehicle.yaw == pytest.approx(-25, abs=0.01)
 
 
@@ -122,7 +122,7 @@ def test_a_pattern_ends_when_a_take_begins_and_none_begins_in_a_take() -> None:
         diver.show(None)
         diver.wait_until(lambda: len(diver.vehicle.shown) == 3)
         diver.bridge.publish(StateChanged(diver.time, TakeState.recording))
-        diver.wait_until(lambda: diver.bridge.has_answered)
+        diver.wait_until(lambda: diver.bridge.has_replied)
         assert [value for _, _, value in diver.vehicle.shown] == [BRIGHT, LOW, BRIGHT, LOW]
         diver.bridge.publish(RecognitionReady(diver.time))
         diver.wait(0.4)
@@ -137,10 +137,10 @@ def test_an_emergency_is_answered_first() -> None:
         diver.wait_until(lambda: len(diver.vehicle.shown) == 1)
         diver.show("help")
         diver.show("other")
-        diver.wait_until(lambda: diver.bridge.has_answered)
+        diver.wait_until(lambda: diver.bridge.has_replied)
     levels = [value for _, _, value in diver.vehicle.shown]
     assert levels == [BRIGHT, LOW] * (len(levels) // 2)
-    assert len(levels) in (2 + 2 * PULSES[Answer.done], 4 + 2 * PULSES[Answer.done])
+    assert len(levels) in (2 + 2 * Reply.done.pulses, 4 + 2 * Reply.done.pulses)
 
 
 @pytest.mark.parametrize("stopped", [True, False])
@@ -162,7 +162,7 @@ def test_the_lights_are_as_before_after_a_lost_link(monkeypatch: pytest.MonkeyPa
         diver.wait(0.6)
         assert diver.vehicle.pulse == BRIGHT
         diver.vehicle.loss = 0.0
-        diver.wait_until(lambda: diver.bridge.has_answered)
+        diver.wait_until(lambda: diver.bridge.has_replied)
         assert diver.vehicle.pulse == LOW
         assert len(diver.vehicle.shown) == 4
 
@@ -175,9 +175,9 @@ def test_an_order_for_the_lights_is_proven_by_its_own_answer_alone() -> None:
         assert diver.wait_for("done", "NOT DONE") == "done: lights 50 %"
         assert diver.vehicle.pulse == 1500
         shown = len(diver.vehicle.shown)
-        wait_for_pattern(diver, shown // 2 + PULSES[Answer.done])
+        wait_for_pattern(diver, shown // 2 + Reply.done.pulses)
         assert diver.vehicle.pulse == 1500
-        assert len(diver.vehicle.shown) == shown + 2 * PULSES[Answer.done]
+        assert len(diver.vehicle.shown) == shown + 2 * Reply.done.pulses
 
 
 def test_a_fifth_of_all_messages_lost_leaves_the_count_and_the_lights() -> None:
@@ -185,24 +185,24 @@ def test_a_fifth_of_all_messages_lost_leaves_the_count_and_the_lights() -> None:
         for _ in range(3):
             diver.vehicle.shown.clear()
             diver.show("stop")
-            wait_for_pattern(diver, PULSES[Answer.repeat])
+            wait_for_pattern(diver, Reply.repeat.pulses)
             assert diver.vehicle.pulse == LOW
-            assert len(diver.vehicle.shown) == 2 * PULSES[Answer.repeat]
+            assert len(diver.vehicle.shown) == 2 * Reply.repeat.pulses
             diver.show("no")
-            wait_for_pattern(diver, PULSES[Answer.repeat] + PULSES[Answer.done])
+            wait_for_pattern(diver, Reply.repeat.pulses + Reply.done.pulses)
 
 
 def test_lights_that_the_vehicle_refuses_to_set_are_told_once() -> None:
     refused = frozenset({int(mavlink.MAV_CMD_DO_SET_SERVO)})
     with answering(refused=refused) as diver:
         diver.show("stop")
-        diver.wait_until(lambda: diver.bridge.has_answered)
+        diver.wait_until(lambda: diver.bridge.has_replied)
     assert diver.vehicle.shown == []
 
 
 def test_a_table_without_answers_asks_the_vehicle_for_nothing() -> None:
     with diving() as diver:
-        diver.wait_until(lambda: diver.bridge._peer.sender is not None)
+        diver.wait_until(lambda: diver.bridge._talk.peer.sender is not None)
         diver.show(None)
         diver.wait(0.3)
     assert diver.vehicle.asked == 0

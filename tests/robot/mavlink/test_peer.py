@@ -15,7 +15,7 @@ pytest.importorskip("pymavlink", reason="needs the extra mavlink")
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from app.robot.mavlink import bridge, links, peer
+from app.robot.mavlink import links, peer, talk
 from app.robot.mavlink.actions import OUR_COMPONENT
 from app.robot.mavlink.heard import SILENT_SECONDS
 from app.robot.mavlink.links import (
@@ -62,7 +62,7 @@ def acknowledgement(command: int = mavlink.MAV_CMD_DO_SET_MODE) -> Any:
 
 
 def test_of_a_vehicle_that_addresses_its_answers_one_without_address_is_anothers() -> None:
-    known = VehiclePeer(Vehicle(), 0.0)
+    known = VehiclePeer(Vehicle(), 0.0, print, None)
     nobodys = mavlink.MAVLink_command_ack_message(mavlink.MAV_CMD_DO_SET_MODE, 0, 0, 0, 0, 0)
     heard = [beat(), nobodys, acknowledgement(), nobodys, acknowledgement()]
     for message in heard:
@@ -77,12 +77,13 @@ def test_of_a_vehicle_that_addresses_its_answers_one_without_address_is_anothers
 
 
 def test_another_robot_on_the_vehicle_is_told_once() -> None:
-    known = VehiclePeer(Vehicle(), 0.0)
+    notices: list[str] = []
+    known = VehiclePeer(Vehicle(), 0.0, notices.append, None)
     ours = mavlink.MAVLink_heartbeat_message(18, 8, 0, 0, 4, 3)
     for component, message in ((1, beat()), (OUR_COMPONENT, ours), (OUR_COMPONENT, ours)):
         message.pack(mavlink.MAVLink(None, 1, component))
         known.admit(message, (), 0.0, busy=False)
-    assert known.take_notices() == ["another robot commands this vehicle too"]
+    assert notices == ["another robot commands this vehicle too"]
 
 
 class Socket:
@@ -275,7 +276,7 @@ def test_a_forged_acknowledgement_of_another_address_proves_nothing() -> None:
 
 def sender_port(diver: Diver) -> int:
     """Return the port that a bridge sends from, once it has."""
-    link: Any = diver.bridge._link
+    link: Any = diver.bridge._talk._link
     wait_until(lambda: bool(link._socket.getsockname()[1]))
     return int(link._socket.getsockname()[1])
 
@@ -286,16 +287,17 @@ def heard(vehicle: VehiclePeer, message: Any, sender: tuple[Any, ...], now: floa
 
 
 def test_one_late_packet_is_no_second_vehicle() -> None:
-    found = VehiclePeer(Vehicle(), 0.0)
+    notices: list[str] = []
+    found = VehiclePeer(Vehicle(), 0.0, notices.append, None)
     assert heard(found, beat(), ("h", 1), 0.0)
     for now, uptime in [(0.1, 60_000), (0.2, 57_000), (0.3, 60_200), (1.3, 61_200)]:
         heard(found, mavlink.MAVLink_system_time_message(0, uptime), ("h", 1), now)
     assert found.is_proven(2.0)
-    assert found.take_notices() == []
+    assert notices == []
 
 
 def test_the_peer_changes_when_it_is_silent_and_in_an_order_on_its_host_alone() -> None:
-    found = VehiclePeer(Vehicle(), 0.0)
+    found = VehiclePeer(Vehicle(), 0.0, print, None)
     heartbeat = beat()
     assert heard(found, heartbeat, ("boat", 1), 0.0)
     assert not heard(found, heartbeat, ("boat", 2), 1.0)
@@ -309,7 +311,7 @@ def test_the_peer_changes_when_it_is_silent_and_in_an_order_on_its_host_alone() 
 
 
 def test_a_vehicle_of_another_kind_is_not_commanded_when_its_heartbeats_are_rare() -> None:
-    found = VehiclePeer(Vehicle(), 0.0)
+    found = VehiclePeer(Vehicle(), 0.0, print, None)
     assert heard(found, beat(), ("h", 1), 0.0)
     heard(found, beat(kind=mavlink.MAV_TYPE_SURFACE_BOAT), ("h", 1), 1.0)
     assert not found.is_proven(1.0)
@@ -322,7 +324,7 @@ def test_a_vehicle_of_another_kind_is_not_commanded_when_its_heartbeats_are_rare
 def test_a_vehicle_of_another_kind_at_another_address_does_not_keep_orders_from_an_ardusub(
     known: bool,
 ) -> None:
-    found = VehiclePeer(Vehicle(), 0.0)
+    found = VehiclePeer(Vehicle(), 0.0, print, None)
     if known:
         heard(found, beat(), ("sub", 1), 0.0)
     began = 2 * SILENT_SECONDS
@@ -339,7 +341,7 @@ def test_a_new_connection_gets_no_command_before_a_heartbeat(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.setattr(links, "RECONNECT_SECONDS", 0.0)
-    monkeypatch.setattr(bridge, "HEARTBEAT_SECONDS", 0.05)
+    monkeypatch.setattr(talk, "HEARTBEAT_SECONDS", 0.05)
     codec = mavlink.MAVLink(None)
 
     def receive(connection: socket.socket) -> list[str]:

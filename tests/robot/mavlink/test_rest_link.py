@@ -16,12 +16,12 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from app.recognition.errors import VehicleError
 from app.robot.mavlink import rest_link
-from app.robot.mavlink.actions import DepthStep, build_steps
-from app.robot.mavlink.bridge import build_heartbeat
+from app.robot.mavlink.actions import DepthStep, VehicleFacts, build_steps
 from app.robot.mavlink.lights_and_tilt import LightsOutput, TiltOutput
 from app.robot.mavlink.links import open_link
 from app.robot.mavlink.rest_link import from_json, to_json
 from app.robot.mavlink.table import Camera, Lights, Surface, Vehicle, VehicleTable
+from app.robot.mavlink.talk import build_heartbeat
 from tests.robot.mavlink.diver import DOES, DONE, TABLE, Diver, wait_until
 from tests.robot.mavlink.mavlink2rest import as_json, as_message, serving
 from tests.robot.mavlink.vehicle import sailing
@@ -31,7 +31,7 @@ SENT = [
     *(step.build(2) for step in build_steps(Surface(), Vehicle(), 1)),
     DepthStep(5, 1, 1).build(0),
     mavlink.MAVLink_statustext_message(mavlink.MAV_SEVERITY_INFO, b"hold"),
-    LightsOutput(Vehicle()).build(1660),
+    LightsOutput(Vehicle(), VehicleFacts(Vehicle())).build(1660),
     TiltOutput(Vehicle()).build(-12.0),
     *(
         step.build(0)
@@ -88,7 +88,7 @@ def test_a_vehicle_answers_the_diver_over_http(monkeypatch: pytest.MonkeyPatch, 
         with closing(diver.bridge):
             diver.show("stop")
             wait_until(lambda: len(vehicle.shown) == 4)
-            wait_until(lambda: diver.bridge.has_answered)
+            wait_until(lambda: diver.bridge.has_replied)
     before, peak = (1100, 1660) if show == "lights" else (0, -12)
     assert [value for _, _, value in vehicle.shown] == [peak, before] * 2
 
@@ -174,7 +174,7 @@ def test_a_message_with_bad_values_does_not_end_the_robot_or_keep_an_emergency_b
         diver = Diver(None, server.address, VehicleTable.model_validate(TABLE))
         with closing(diver.bridge):
             server.say(HEARTBEAT, 1)
-            wait_until(lambda: diver.bridge._peer.sender is not None)
+            wait_until(lambda: diver.bridge._talk.peer.sender is not None)
             server.say(hud, 2, **changes)
             diver.show("help")
             wait_until(lambda: server.count_commands() > 1)
@@ -187,7 +187,7 @@ def test_an_emergency_is_sent_though_nothing_can_be_fetched_any_more() -> None:
         diver = Diver(None, server.address, VehicleTable.model_validate(TABLE))
         with closing(diver.bridge):
             server.say(HEARTBEAT, 1)
-            wait_until(lambda: diver.bridge._peer.sender is not None)
+            wait_until(lambda: diver.bridge._talk.peer.sender is not None)
             server.fails = True
             assert diver.wait_for("no connection to the vehicle")
             diver.show("help")

@@ -14,7 +14,7 @@ pytest.importorskip("pymavlink", reason="needs the extra mavlink")
 from pydantic import ValidationError
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from app.robot.mavlink.links import create_signing, open_link
+from app.robot.mavlink.links import SigningTime, open_link
 from app.robot.mavlink.peer import MOST_RIVALS, VehiclePeer
 from app.robot.mavlink.table import Vehicle, VehicleTable
 from tests.robot.mavlink.diver import TABLE, Diver, wait_until
@@ -49,7 +49,7 @@ def test_with_two_claimants_orders_wait_and_an_emergency_goes_to_both_and_is_nev
         closing(Socket(port)) as second,
     ):
         first.send_always(obedient, 0.005)
-        wait_until(lambda: diver.bridge._peer.sender is not None)
+        wait_until(lambda: diver.bridge._talk.peer.sender is not None)
         second.send_always(obedient, 0.005)
         assert diver.wait_for("two vehicles").startswith(
             "two vehicles with system 1, orders wait: 127.0.0.1:"
@@ -82,7 +82,7 @@ def test_the_address_that_the_table_names_wins(is_first: bool) -> None:
         for each in (named, rival) if is_first else (rival, named):
             each.send_always(obedient, 0.005)
             time.sleep(0.05)
-        wait_until(lambda: diver.bridge._peer.sender is not None)
+        wait_until(lambda: diver.bridge._talk.peer.sender is not None)
         said = diver.wait_for("two vehicles")
         assert said.startswith("two vehicles with system 1: 127.0.0.2:")
         assert said.endswith(" is ignored")
@@ -97,7 +97,7 @@ def test_the_claimant_whose_link_is_signed_wins(tmp_path: Path) -> None:
     key, port = bytes(range(32)), free_port()
     table = VehicleTable.model_validate(TABLE)
     link = open_link(f"udpin:127.0.0.1:{port}", 1, 1, key, tmp_path / "time")
-    diver, signing = Diver(None, "", table, link), create_signing(key)
+    diver, signing = Diver(None, "", table, link), SigningTime(key, None).signing
     with (
         closing(diver.bridge),
         closing(Socket(port)) as unsigned,
@@ -106,7 +106,7 @@ def test_the_claimant_whose_link_is_signed_wins(tmp_path: Path) -> None:
         unsigned.send_always(obedient, 0.005)
         time.sleep(0.1)
         signed.send_always(lambda: [packed(each, signing=signing) for each in obedient()], 0.005)
-        wait_until(lambda: diver.bridge._peer.sender is not None)
+        wait_until(lambda: diver.bridge._talk.peer.sender is not None)
         diver.show("help")
         assert diver.wait_for("done", "NOT DONE", "two vehicles") == "done: surface"
     assert modes_of(signed.commands) == {SURFACE}
@@ -120,23 +120,24 @@ def test_an_order_that_waited_is_sent_and_done_when_the_rival_is_gone() -> None:
         closing(Socket(port)) as second,
     ):
         first.send_always(obedient, 0.005)
-        wait_until(lambda: diver.bridge._peer.sender is not None)
+        wait_until(lambda: diver.bridge._talk.peer.sender is not None)
         second.send(beat())
         diver.wait_for("two vehicles")
         diver.confirm("stop")
         diver.wait_for("waits")
         # Ten heard seconds later, without waiting for them.
-        diver.bridge._peer._heard_clock.seconds += 10.0
+        diver.bridge._talk.peer._heard_clock.seconds += 10.0
         assert diver.wait_for("done", "NOT DONE") == "done: hold"
     assert second.commands == []
 
 
 def test_the_block_ends_ten_heard_seconds_after_the_rivals_last_heartbeat() -> None:
-    found = VehiclePeer(Vehicle(), 0.0)
+    notices: list[str] = []
+    found = VehiclePeer(Vehicle(), 0.0, notices.append, None)
     for second in range(4):
         heard(found, beat(), ("h", 1), second)
     heard(found, beat(), ("h", 2), 3.5)
-    assert found.take_notices() == ["two vehicles with system 1, orders wait: h:2"]
+    assert notices == ["two vehicles with system 1, orders wait: h:2"]
     assert found.claimants == [("h", 1), ("h", 2)]
     # Ten minutes in which nobody is heard end no block.
     for second in range(604, 613):
@@ -145,11 +146,11 @@ def test_the_block_ends_ten_heard_seconds_after_the_rivals_last_heartbeat() -> N
     heard(found, beat(), ("h", 1), 614)
     assert not found.contest
     heard(found, beat(), ("h", 2), 615)
-    assert len(found.take_notices()) == 1
+    assert len(notices) == 2
 
 
 def test_a_rival_that_takes_the_place_of_a_silent_vehicle_is_still_one_of_two() -> None:
-    found = VehiclePeer(Vehicle(), 0.0)
+    found = VehiclePeer(Vehicle(), 0.0, print, None)
     heard(found, beat(), ("h", 1), 0.0)
     for second in range(1, 16):
         heard(found, beat(), ("h", 2), second)
@@ -158,11 +159,12 @@ def test_a_rival_that_takes_the_place_of_a_silent_vehicle_is_still_one_of_two() 
 
 
 def test_a_flood_of_addresses_is_no_flood_of_commands() -> None:
-    found = VehiclePeer(Vehicle(), 0.0)
+    notices: list[str] = []
+    found = VehiclePeer(Vehicle(), 0.0, notices.append, None)
     for port in range(100):
         heard(found, beat(), ("h", port), 0.0)
     assert len(found.claimants) == 1 + MOST_RIVALS
-    assert len(found.take_notices()) == MOST_RIVALS
+    assert len(notices) == MOST_RIVALS
 
 
 @pytest.mark.usefixtures("closes_soon")

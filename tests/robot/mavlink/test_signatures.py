@@ -20,11 +20,11 @@ from app.cli.robots.robot_options import RobotOptions
 from app.cli.robots.run import open_bridge
 from app.recognition.errors import VehicleError
 from app.robot import TriggerListener
-from app.robot.mavlink import bridge, links
-from app.robot.mavlink.links import Reader, create_signing, open_link
+from app.robot.mavlink import bridge, links, talk
+from app.robot.mavlink.links import Reader, SigningTime, open_link
 from app.robot.mavlink.table import VehicleTable
 from tests.robot.languages import spoken
-from tests.robot.mavlink.diver import TABLE, Diver, wait_until
+from tests.robot.mavlink.diver import TABLE, Diver, talking, wait_until
 from tests.robot.mavlink.test_peer import QUICK, Socket, beat, packed
 from tests.robot.mavlink.vehicle import sailing
 from tests.robot.rtp_camera import free_port
@@ -75,13 +75,13 @@ def test_a_vehicle_hears_a_signed_robot_that_starts_again_with_an_earlier_clock(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path, seconds: float
 ) -> None:
     """The vehicle is pymavlink's check of signatures, which rejects what goes back in time."""
-    monkeypatch.setattr(bridge, "HEARTBEAT_SECONDS", 0.02)
+    monkeypatch.setattr(talk, "HEARTBEAT_SECONDS", 0.02)
     file = tmp_path / "vehicle.json"
     changes = {"vehicle": {"key_file": "key"}, "cancel": [], "emergency": {}}
     gestures = {"circle": {"do": "hold"}}
     file.write_text(json.dumps({**TABLE, **changes, "gestures": gestures}))
     (tmp_path / "key").write_bytes(KEY)
-    reader, real, accepted = Reader(create_signing(KEY)), time.time, []
+    reader, real, accepted = Reader(SigningTime(KEY, None).signing), time.time, []
     with closing(socket.socket(socket.AF_INET, socket.SOCK_DGRAM)) as vehicle:
         vehicle.bind(("127.0.0.1", 0))
         vehicle.settimeout(20)
@@ -91,7 +91,7 @@ def test_a_vehicle_hears_a_signed_robot_that_starts_again_with_an_earlier_clock(
             listener = TriggerListener(spoken("circle"))
             options = RobotOptions(file, mavlink=address)
             robot = open_bridge(options, file, listener, None, print, lambda *said: None)
-            with closing(robot):
+            with talking(robot):
                 accepted.append(len(reader.read(vehicle.recv(1000))[0]))
     assert accepted == [1, 1, 1]
 
@@ -140,7 +140,7 @@ def test_a_vehicle_that_rejects_our_signature_is_named() -> None:
         {**TABLE, "vehicle": {**QUICK["vehicle"], "key_file": "key"}}
     )
     with listening_diver_of(KEY, signed) as (diver, port), closing(Socket(port)) as vehicle:
-        signing = create_signing(KEY)
+        signing = SigningTime(KEY, None).signing
         vehicle.send_always(
             lambda: [packed(each, signing=signing) for each in (beat(), accepted)], 0.02
         )
@@ -167,11 +167,11 @@ def test_a_forged_signature_from_the_future_does_not_deafen_the_bridge() -> None
 
 def test_a_signed_message_counts_once_also_beside_a_forged_one() -> None:
     def signing(key: bytes) -> Any:
-        made = create_signing(key)
+        made = SigningTime(key, None).signing
         made.link_id = 7
         return made
 
-    ours = create_signing(KEY)
+    ours = SigningTime(KEY, None).signing
     once = packed(beat(), signing=signing(KEY))
     forged = packed(beat(), signing=signing(bytes(32)))
     counts = [len(Reader(ours).read(data)[0]) for data in (once + forged, once + forged, once)]

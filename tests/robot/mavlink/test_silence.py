@@ -26,7 +26,7 @@ def diver(request: pytest.FixtureRequest) -> Iterator[Diver]:
     with diving(changes=shown, lights=LIGHTS) as made:
         made.wait(2)
         yield made
-    assert not made.bridge._thread.is_alive()
+    assert not made.bridge._talk._thread.is_alive()
 
 
 def vehicle_of(diver: Diver) -> SimulatedVehicle:
@@ -84,7 +84,7 @@ def test_an_outage_in_any_state_restores_the_output_and_is_told_truly(
         assert is_done == told[-1].startswith("done") or label == "deep"
     assert vehicle.pulse == (1500 if "servo 13 1500" in vehicle.obeyed else LIGHTS)
     assert vehicle.pitch == 0
-    assert diver.bridge.has_answered
+    assert diver.bridge.has_replied
 
 
 def test_an_emergency_lasts_a_minute_in_which_the_vehicle_is_heard(diver: Diver) -> None:

@@ -13,14 +13,14 @@ import pytest
 from app.recognition.errors import VehicleError
 from app.recognition.phrases.grammar import Grammar
 from app.recognition.phrases.phrase import OneOf, Phrase
-from app.robot.commands.answers import PULSES
+from app.robot.commands.replies import Reply
 from app.robot.mavlink.table import (
-    Answers,
     Camera,
     Depth,
     Hold,
     Lights,
     Mode,
+    Replies,
     Surface,
     VehicleTable,
     read_vehicle_table,
@@ -81,9 +81,9 @@ def test_the_documented_table_is_one(tmp_path: Path) -> None:
     file.write_text(block)
     assert len(read_vehicle_table(file).gestures) == 5
     file.write_text(block + answers)
-    assert read_vehicle_table(file).answers == Answers(show=("lights",))
+    assert read_vehicle_table(file).answers == Replies(show=("lights",))
     listed = re.findall(r"^\| `(\w+)` \| (\d) \|", page, re.MULTILINE)
-    assert listed == [(answer.value, str(count)) for answer, count in PULSES.items()]
+    assert listed == [(answer.value, str(answer.pulses)) for answer in Reply]
     actions = set(re.findall(r"^\| `(\w+)` \| (?:`MAV|the same|`ALT)", page, re.MULTILINE))
     assert actions == {get_args(kind.model_fields["do"].annotation)[0] for kind in KINDS}
 
@@ -152,4 +152,4 @@ def test_what_a_table_cannot_do_in_a_language_is_known_before_the_dive(
     tmp_path: Path, table: str, grammar: Grammar | None, faults: list[tuple[bool, str]]
 ) -> None:
     language = replace(language_of("circle", "line", "square"), grammar=grammar)
-    assert [*read(tmp_path, table).list_faults(language, spots=False)] == faults
+    assert [*read(tmp_path, table).list_faults(language)] == faults

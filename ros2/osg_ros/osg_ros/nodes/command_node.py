@@ -14,7 +14,6 @@ from osg_interfaces.msg import ActiveLanguage as LanguageMessage
 from osg_interfaces.msg import Answer, Command, CommandState, GestureRecognition, Phrase
 from std_msgs.msg import Header
 
-from osg_ros.commands.answers import PULSE_SECONDS, PULSES
 from osg_ros.commands.dialogue import (
     CommandDialogue,
     CommandTable,
@@ -22,6 +21,7 @@ from osg_ros.commands.dialogue import (
     RecognizedGesture,
     RecognizedPhrase,
 )
+from osg_ros.commands.replies import PULSE_SECONDS
 from osg_ros.commands.rules import (
     CONFIRM_SECONDS,
     EMERGENCY_AGE_SECONDS,
@@ -242,14 +242,14 @@ class CommandNode(ManagedNode):
             state.deadline = to_stamp(round(pending.deadline * NANOSECONDS))
         self._state.publish(state)
         # One gesture may be decided about twice, alone and as a part of a message.
-        if decision.answer is None or stamp == self._answered:
+        if decision.reply is None or stamp == self._answered:
             return
         self._answered = stamp
         self._answers.publish(
             Answer(
                 header=state.header,
-                answer=decision.answer.value,
-                pulses=PULSES[decision.answer],
+                answer=decision.reply.value,
+                pulses=decision.reply.pulses,
                 pulse_seconds=PULSE_SECONDS,
                 text=decision.reason,
             )

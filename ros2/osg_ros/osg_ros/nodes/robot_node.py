@@ -15,7 +15,7 @@ from std_msgs.msg import Header
 from app.recognition.errors import OsgError
 from app.recognition.poses.frame import FrameLandmarks
 from app.robot import ActiveLanguage, AnswerGiven, Event, Frame, SourceOpened
-from osg_ros.commands.answers import PULSE_SECONDS
+from osg_ros.commands.replies import PULSE_SECONDS
 from osg_ros.nodes.managed_node import RESULTS, ManagedNode
 from osg_ros.nodes.process import LONGEST_WAIT, run_nodes, start_node
 from osg_ros.topics.gesture_topics import GestureTopics

@@ -1,1 +1,0 @@
-../../../../app/robot/commands/answers.py

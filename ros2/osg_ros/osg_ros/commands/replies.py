@@ -1,0 +1,1 @@
+../../../../app/robot/commands/replies.py
