@@ -71,6 +71,28 @@ export const iconButtonOf = (name, label, run, { writes = false, id, disabled = 
   </button>`;
 
 /**
+ * A button with words.
+ *
+ * @param {unknown} words
+ * @param {() => unknown} run
+ * @param {{ look?: string, writes?: boolean, title?: string, label?: string, id?: string, disabled?: unknown, hidden?: boolean }} [more]
+ */
+export const buttonOf = (words, run, { look, writes, title, label, id, disabled, hidden } = {}) =>
+  html`<button
+    type="button"
+    class=${ifDefined(look)}
+    id=${ifDefined(id)}
+    title=${ifDefined(title)}
+    aria-label=${ifDefined(label)}
+    ?data-writes=${writes}
+    ?disabled=${disabled}
+    ?hidden=${hidden}
+    @click=${run}
+  >
+    ${words}
+  </button>`;
+
+/**
  * Make the element of a template once, for a place that is not drawn from the state.
  *
  * @param {TemplateResult} template

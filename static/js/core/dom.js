@@ -93,31 +93,3 @@ export function icon(name) {
     svg("path", { d: ICONS[name] }),
   );
 }
-
-/** @param {HTMLElement} list */
-const elementsIn = (list) => /** @type {HTMLElement[]} */ ([...list.children]);
-
-/**
- * Make a list's children match `items`, reusing the element of an item that stays, so that focus
- * and running transitions survive. `draw(item, element)` returns the element.
- *
- * @template T
- * @param {HTMLElement} list
- * @param {T[]} items
- * @param {(item: T) => string | number} keyOf
- * @param {(item: T, element: any) => HTMLElement} draw
- */
-export function reconcile(list, items, keyOf, draw) {
-  const known = new Map(elementsIn(list).map((element) => [element.dataset.key, element]));
-  const wanted = items.map((item) => {
-    const key = String(keyOf(item));
-    const drawn = draw(item, known.get(key));
-    drawn.dataset.key = key;
-    return drawn;
-  });
-  const keep = new Set(wanted);
-  for (const element of elementsIn(list)) if (!keep.has(element)) element.remove();
-  wanted.forEach((element, index) => {
-    if (list.children[index] !== element) list.insertBefore(element, list.children[index] ?? null);
-  });
-}

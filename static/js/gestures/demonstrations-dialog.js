@@ -8,12 +8,11 @@ import { byId, h } from "../core/dom.js";
 import { moment } from "../core/format.js";
 import { currentLanguage, follow, selectedRange, state } from "../core/state.js";
 import { MAX_DEMONSTRATIONS, MAX_DIVER_LENGTH } from "../core/text-limit.js";
-import { attempt, complain } from "../core/toasts.js";
-import { showDone } from "../core/undo.js";
+import { attempt } from "../core/toasts.js";
 import { address, go, here } from "../core/views.js";
 import { openTrigger } from "../languages/language-trigger.js";
-import { edit } from "../languages/revision-edit.js";
-import { html, limited, nothing, optionsOf, render } from "../templates.js";
+import { editAndShow } from "../languages/revision-edit.js";
+import { buttonOf, html, limited, nothing, optionsOf, render } from "../templates.js";
 import { isHeld, listFollowed, nameShapes } from "./held-shape.js";
 
 /** @import { Clip, Demonstration, DemonstrationFault, Gesture, Source, Take } from "../core/types.d.ts" */
@@ -64,16 +63,14 @@ export const shortFault = ({ faults }) => SHORT_FAULTS[faults[0].kind];
  * @param {Source} source
  * @param {DemonstrationFault} fault
  */
-async function setRange(label, { clip_id }, { start, end }) {
-  try {
-    await edit("Setting the range", `Range of ${label}`, (language) =>
+const setRange = (label, { clip_id }, { start, end }) =>
+  editAndShow(
+    "Setting the range",
+    `Range of ${label}`,
+    (language) =>
       api.languages.changeGesture(language, label, { demonstration: { clip_id, start, end } }),
-    );
-    showDone("Range set", label);
-  } catch (error) {
-    complain(error, "Setting the range");
-  }
-}
+    () => ["Range set", label],
+  );
 
 /**
  * The faults of a demonstration as a note, with the one remedy of the gravest.
@@ -114,16 +111,13 @@ const clipOf = (source) => source && state.clips.find(({ id }) => id === source.
  * @param {string} label
  * @param {number} index
  */
-async function remove(label, index) {
-  try {
-    await edit("Removing the demonstration", `Removal of a demonstration of ${label}`, (language) =>
-      api.languages.removeDemonstration(language, label, index),
-    );
-    showDone("Demonstration removed", label);
-  } catch (error) {
-    complain(error, "Removing the demonstration");
-  }
-}
+const remove = (label, index) =>
+  editAndShow(
+    "Removing the demonstration",
+    `Removal of a demonstration of ${label}`,
+    (language) => api.languages.removeDemonstration(language, label, index),
+    () => ["Demonstration removed", label],
+  );
 
 /**
  * The clip that a demonstration was taken from, as a link to its range.
@@ -165,16 +159,12 @@ function figure(gesture, demonstration) {
     <span class="dim">${listFollowed(demonstration)}</span>
     <span class="dim">${demonstration.strokes}</span>
     ${origin(source)}${faultNote(gesture.label, index, source)}
-    <button
-      type="button"
-      data-writes
-      ?disabled=${alone}
-      title=${alone ? "The only demonstration stays; delete the gesture instead" : ""}
-      aria-label="Remove ${name.toLowerCase()}"
-      @click=${() => remove(gesture.label, index)}
-    >
-      Remove
-    </button>
+    ${buttonOf("Remove", () => remove(gesture.label, index), {
+      writes: true,
+      title: alone ? "The only demonstration stays; delete the gesture instead" : "",
+      label: `Remove ${name.toLowerCase()}`,
+      disabled: alone,
+    })}
   </li>`;
 }
 
@@ -231,18 +221,15 @@ async function add(event) {
   const body = { label, clip_id: clip, start, end, diver: diver.value.trim() };
   dialog.adding = true;
   draw();
-  try {
-    await edit("Adding the demonstration", `Another demonstration of ${label}`, (language) =>
-      api.languages.addDemonstration(language, body),
-    );
-    diver.value = "";
-    showDone("Demonstration added", label);
-  } catch (error) {
-    complain(error, "Adding the demonstration");
-  } finally {
-    dialog.adding = false;
-    draw();
-  }
+  const added = await editAndShow(
+    "Adding the demonstration",
+    `Another demonstration of ${label}`,
+    (language) => api.languages.addDemonstration(language, body),
+    () => ["Demonstration added", label],
+  );
+  if (added) diver.value = "";
+  dialog.adding = false;
+  draw();
 }
 
 /**

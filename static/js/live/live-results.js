@@ -5,7 +5,7 @@ import { askWhich, moment, percent } from "../core/format.js";
 import { endName } from "../clips/salutes.js";
 import { state } from "../core/state.js";
 import { go } from "../core/views.js";
-import { elementOf, html, nothing, render } from "../templates.js";
+import { buttonOf, elementOf, html, nothing, render } from "../templates.js";
 
 /** @import { Clip } from "../core/types.d.ts" */
 /** @import { Recognized } from "../camera/live-messages.d.ts" */
@@ -49,14 +49,10 @@ function entry(result, clip, clock) {
     frame: null,
     recognition: null,
   };
-  const open = html`<button
-    type="button"
-    class="link"
-    aria-label="Open ${title} at ${moment(result.start)} in the studio"
-    @click=${() => go("studio", range)}
-  >
-    Open
-  </button>`;
+  const open = buttonOf("Open", () => go("studio", range), {
+    look: "link",
+    label: `Open ${title} at ${moment(result.start)} in the studio`,
+  });
   return html`<li class=${lookOf(result)}>
     <b>${title}</b>
     <span
