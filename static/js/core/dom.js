@@ -80,16 +80,3 @@ export function svg(tag, attributes = {}, ...children) {
   element.append(...children);
   return element;
 }
-
-/**
- * Make one of the line icons; it is decoration, so its button needs a label of its own.
- *
- * @param {string} name
- */
-export function icon(name) {
-  return svg(
-    "svg",
-    { viewBox: "0 0 20 20", "aria-hidden": "true" },
-    svg("path", { d: ICONS[name] }),
-  );
-}

@@ -6,7 +6,7 @@ import * as api from "../core/api.js";
 import { closeDialog, showDialog } from "../core/dialogs.js";
 import { byId, h } from "../core/dom.js";
 import { moment } from "../core/format.js";
-import { currentLanguage, follow, selectedRange, state } from "../core/state.js";
+import { currentLanguage, follow, placeIn, selectedRange, state } from "../core/state.js";
 import { MAX_DEMONSTRATIONS, MAX_DIVER_LENGTH } from "../core/text-limit.js";
 import { attempt } from "../core/toasts.js";
 import { address, go, here } from "../core/views.js";
@@ -127,13 +127,7 @@ const remove = (label, index) =>
 function origin(source) {
   const clip = clipOf(source);
   if (!clip || !source) return html`<span class="dim">its clip is not here</span>`;
-  const place = {
-    clip: clip.id,
-    take: null,
-    start: source.start,
-    end: source.end,
-    recognition: null,
-  };
+  const place = placeIn(clip.id, { start: source.start, end: source.end });
   const open = here(() => {
     closeDialog();
     go("studio", place);

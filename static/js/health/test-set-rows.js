@@ -2,7 +2,7 @@
 
 import { statusText } from "../clips/clip-store.js";
 import { askWhich } from "../core/format.js";
-import { state } from "../core/state.js";
+import { placeIn, state } from "../core/state.js";
 import { buttonOf, html, iconButtonOf, ifDefined, live } from "../templates.js";
 import { address, go, here } from "../core/views.js";
 import { labelTake, NONE } from "../languages/test-set.js";
@@ -115,15 +115,9 @@ export const uploadRow = ({ file, status, cancel, error, loaded, total }) =>
  */
 export function placeOf(take, takes) {
   const alone = takes.filter((each) => each.clip_id === take.clip_id).length === 1;
-  return {
-    clip: take.clip_id,
-    recognition: take.recognition_id,
-    take: null,
-    start: alone ? null : take.start,
-    end: alone ? null : take.end,
-    frame: null,
-    pair: null,
-  };
+  const { recognition_id: recognition, start, end } = take;
+  const range = alone ? { recognition } : { recognition, start, end };
+  return { ...placeIn(take.clip_id, range), pair: null };
 }
 
 /**

@@ -3,7 +3,7 @@
 import { byId } from "../core/dom.js";
 import { askWhich, moment, percent } from "../core/format.js";
 import { endName } from "../clips/salutes.js";
-import { state } from "../core/state.js";
+import { placeIn, state } from "../core/state.js";
 import { go } from "../core/views.js";
 import { buttonOf, elementOf, html, nothing, render } from "../templates.js";
 
@@ -41,15 +41,8 @@ const lookOf = ({ label, pair }) => (pair ? "asked" : label === null ? "unsure" 
  */
 function entry(result, clip, clock) {
   const { title, text } = verdict(result);
-  const range = {
-    clip: clip?.id,
-    take: null,
-    start: result.start,
-    end: result.end,
-    frame: null,
-    recognition: null,
-  };
-  const open = buttonOf("Open", () => go("studio", range), {
+  const place = placeIn(clip?.id, { start: result.start, end: result.end });
+  const open = buttonOf("Open", () => go("studio", place), {
     look: "link",
     label: `Open ${title} at ${moment(result.start)} in the studio`,
   });

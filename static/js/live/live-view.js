@@ -7,6 +7,7 @@ import { countDown, record } from "../camera/recording.js";
 import { takeEnd } from "../camera/take-end.js";
 import { cameraPossible, offerCameras, release, showClip } from "../camera/video-source.js";
 import { watch } from "../camera/watching.js";
+import { select } from "../clips/clip-store.js";
 import * as api from "../core/api.js";
 import { byId, h } from "../core/dom.js";
 import { bind } from "../core/key-bindings.js";
@@ -286,14 +287,7 @@ function wire() {
   byId("live-cameras").onchange = start;
   byId("live-clips").onchange = () => {
     stop();
-    update({
-      clip: byId("live-clips").value,
-      take: null,
-      start: null,
-      end: null,
-      frame: null,
-      recognition: null,
-    });
+    select(byId("live-clips").value);
   };
   byId("live-clear").onclick = () => clearResults(FIRST);
 }

@@ -1,7 +1,7 @@
 // The records of practice: the evidence that each diver's takes give, and the takes themselves.
 
 import { askWhich, percent, plural } from "../core/format.js";
-import { state } from "../core/state.js";
+import { placeIn, state } from "../core/state.js";
 import { address, go, here } from "../core/views.js";
 import { html, iconButtonOf, nothing } from "../templates.js";
 
@@ -23,16 +23,6 @@ export function evidenceOf({ takes, errors, bound, limit: most, reached, more, c
 }
 
 /** @param {PracticeTake} take */
-const placeOf = ({ clip_id: clip, recognition_id: recognition }) => ({
-  clip,
-  recognition,
-  take: null,
-  start: null,
-  end: null,
-  frame: null,
-});
-
-/** @param {PracticeTake} take */
 function readAs({ right, pair, label }) {
   if (right) return " recognised";
   return pair ? ` asked back: ${askWhich(pair)}` : ` read as ${label ?? "nothing"}`;
@@ -45,7 +35,7 @@ function readAs({ right, pair, label }) {
 function takeRow(take, remove) {
   const { right, pair, expected, revision, added_by: by } = take;
   const clip = state.clips.find(({ id }) => id === take.clip_id);
-  const place = placeOf(take);
+  const place = placeIn(take.clip_id, { recognition: take.recognition_id });
   return html`<li class=${right ? "right" : pair ? "asked" : "wrong"}>
     <span aria-hidden="true">${right ? "\u2713" : pair ? "?" : "\u2260"}</span>
     <span

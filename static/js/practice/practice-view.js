@@ -11,7 +11,7 @@ import { h, WRITES } from "../core/dom.js";
 import { follow, state } from "../core/state.js";
 import { limit } from "../core/text-limit.js";
 import { attempt, complain } from "../core/toasts.js";
-import { elementOf, html, nothing, render } from "../templates.js";
+import { buttonOf, elementOf, html, nothing, render } from "../templates.js";
 import { addFiles, takeFilesIn } from "../upload/upload-list.js";
 import { practiceCamera } from "./practice-camera.js";
 import { feedback } from "./practice-feedback.js";
@@ -84,17 +84,12 @@ export function open(section) {
    * @param {string} text
    */
   const sourceButton = (name, text) =>
-    h(
-      "button",
-      {
-        type: "button",
-        onclick: () => {
-          source = name;
-          if (name === "clip") camera.stop();
-          draw();
-        },
-      },
-      text,
+    elementOf(
+      buttonOf(text, () => {
+        source = name;
+        if (name === "clip") camera.stop();
+        draw();
+      }),
     );
   const [byCamera, byClip] = [sourceButton("camera", "Camera"), sourceButton("clip", "Clip")];
   /** @type {Map<string, Attempt>} */

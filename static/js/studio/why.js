@@ -185,13 +185,21 @@ async function keepAsTest(result) {
 const note = (text) => html`<p class="dim">${text}</p>`;
 
 /**
+ * A button within a sentence; its text is a property, so that there are no spaces around it.
+ *
  * @param {string} words
  * @param {() => unknown} run
  * @param {string} [look]
  * @param {string} [title]
  */
 const link = (words, run, look = "", title = undefined) =>
-  buttonOf(words, run, { look: `link ${look}`, title });
+  html`<button
+    type="button"
+    class="link ${look}"
+    title=${ifDefined(title)}
+    .textContent=${words}
+    @click=${run}
+  ></button>`;
 
 /** @param {number} seconds */
 function goTo(seconds) {
