@@ -93,6 +93,20 @@ export const buttonOf = (words, run, { look, writes, title, label, id, disabled,
   </button>`;
 
 /**
+ * A bar of progress; it moves by itself while the total is not known.
+ *
+ * @param {string} label
+ * @param {number | undefined} done
+ * @param {number | undefined} total
+ */
+export const progressBar = (label, done, total) =>
+  html`<progress
+    aria-label=${label}
+    max=${total || 1}
+    value=${ifDefined(total ? done : undefined)}
+  ></progress>`;
+
+/**
  * Make the element of a template once, for a place that is not drawn from the state.
  *
  * @param {TemplateResult} template

@@ -37,25 +37,6 @@ let followed = false;
 export const withMarks = (thumbnail) =>
   `${api.beside(thumbnail)}${thumbnail.includes("?") ? "&" : "?"}marks=true`;
 
-const SHORT_FAULTS = {
-  whole_clip: "whole clip",
-  contains_salute: "contains a salute",
-  reaches_salute: "reaches the salutes",
-  cut_short: "cut short",
-  contains_rest: "contains rest",
-  other_person: "another person",
-  keypoints_jumped: "keypoints jump",
-  keypoints_missing: "keypoints missing",
-  no_hand: "no hand seen",
-};
-
-/**
- * The gravest fault of a demonstration in a few words, for a tag.
- *
- * @param {Pick<Source, "faults">} source
- */
-export const shortFault = ({ faults }) => SHORT_FAULTS[faults[0].kind];
-
 /**
  * Give a demonstration the range of its clip that mends its fault.
  *

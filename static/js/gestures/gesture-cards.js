@@ -2,16 +2,17 @@
 
 import { expectedOf, NONE } from "../languages/test-set.js";
 import { labelInName } from "../clips/clip-label.js";
+import { endName } from "../clips/salutes.js";
 import * as api from "../core/api.js";
 import { byId, h } from "../core/dom.js";
-import { plural } from "../core/format.js";
+import { plural, readable } from "../core/format.js";
 import { currentLanguage, selectedClip, state } from "../core/state.js";
 import { go } from "../core/views.js";
 import { editAndShow } from "../languages/revision-edit.js";
 import { openSettings } from "../languages/settings-dialog.js";
 import { buttonOf, html, iconButtonOf, nothing, render, repeat } from "../templates.js";
 import { isHeld, listFollowed, nameShapes } from "./held-shape.js";
-import { openDemonstrations, shortFault, withMarks } from "./demonstrations-dialog.js";
+import { openDemonstrations, withMarks } from "./demonstrations-dialog.js";
 
 /** @import { Gesture, Language, Recognition, State } from "../core/types.d.ts" */
 
@@ -35,9 +36,10 @@ function remove(gesture) {
  */
 function faultTag({ demonstrations }) {
   const bad = demonstrations.map(({ source }) => source).find((source) => source?.faults.length);
-  return bad
-    ? html`<span class="tag fault" title=${bad.faults[0].sentence}>${shortFault(bad)}</span>`
-    : nothing;
+  if (!bad) return nothing;
+  const [{ kind, sentence }] = bad.faults;
+  const words = readable(kind).replace("salute", endName(state.gestures));
+  return html`<span class="tag fault" title=${sentence}>${words}</span>`;
 }
 
 /**

@@ -3,7 +3,7 @@
 import { statusText } from "../clips/clip-store.js";
 import { askWhich } from "../core/format.js";
 import { placeIn, state } from "../core/state.js";
-import { buttonOf, html, iconButtonOf, ifDefined, live } from "../templates.js";
+import { buttonOf, html, iconButtonOf, live, progressBar } from "../templates.js";
 import { address, go, here } from "../core/views.js";
 import { labelTake, NONE } from "../languages/test-set.js";
 import { leaveOut, leaveWaiting, means } from "./test-set-clips.js";
@@ -64,18 +64,6 @@ const waiting = (name, { shows, text, progress, close }) =>
     <td>${close}</td>
   </tr>`;
 
-/**
- * @param {string} label
- * @param {number | undefined} done
- * @param {number | undefined} total
- */
-const bar = (label, done, total) =>
-  html`<progress
-    aria-label=${label}
-    max=${total || 1}
-    value=${ifDefined(total ? done : undefined)}
-  ></progress>`;
-
 /** @param {WaitingClip} waiting */
 export function waitingRow({ clip, expected, busy }) {
   const job = state.jobs.get(clip.job_id);
@@ -87,7 +75,7 @@ export function waitingRow({ clip, expected, busy }) {
         : expected
           ? "Recognising"
           : "Choose its label",
-    progress: busy ? bar(`Poses of ${clip.name}`, job?.done, job?.total) : "",
+    progress: busy ? progressBar(`Poses of ${clip.name}`, job?.done, job?.total) : "",
     close: iconButtonOf("close", `Leave ${clip.name} out of the test`, () => leaveWaiting(clip)),
   });
 }
@@ -102,7 +90,8 @@ export const uploadRow = ({ file, status, cancel, error, loaded, total }) =>
         : status === "waiting"
           ? "Waiting for the other uploads"
           : "Uploading",
-    progress: status === "failed" ? "" : bar(`Upload of ${file.name}`, loaded, Math.max(1, total)),
+    progress:
+      status === "failed" ? "" : progressBar(`Upload of ${file.name}`, loaded, Math.max(1, total)),
     close:
       status === "uploading" && cancel ? iconButtonOf("close", `Cancel ${file.name}`, cancel) : "",
   });

@@ -4,7 +4,7 @@ import { olderClipsButton } from "../clips/older-clips.js";
 import { saveFile } from "../clips/mcap-export.js";
 import { plural } from "../core/format.js";
 import { currentLanguage, state, update } from "../core/state.js";
-import { buttonOf, guard, html, live, nothing, repeat } from "../templates.js";
+import { buttonOf, guard, html, live, nothing, progressBar, repeat } from "../templates.js";
 import { go } from "../core/views.js";
 import { cancelTestRun, changeWords, NONE, runTestSet } from "../languages/test-set.js";
 import { csvOf, testedOf } from "./test-set-results.js";
@@ -170,12 +170,14 @@ function runControl({ waiting }) {
   const { testing } = state;
   if (testing)
     return html`<span class="test-run" role="status"
-      >${testing.done} of ${plural(testing.total, "take")} recognised<progress
-        aria-label="Progress of the test"
-        max=${Math.max(1, testing.total)}
-        value=${testing.done}
-      ></progress
-      ><button type="button" data-writes @click=${cancelTestRun}>Cancel</button></span
+      >${testing.done} of ${plural(testing.total, "take")}
+      recognised${progressBar("Progress of the test", testing.done, testing.total)}<button
+        type="button"
+        data-writes
+        @click=${cancelTestRun}
+      >
+        Cancel
+      </button></span
     >`;
   return waiting
     ? html`<button type="button" class="primary" data-writes @click=${() => runTestSet()}>

@@ -2,7 +2,7 @@
 
 import { howTo, isSlow, situation } from "../camera/take-steps.js";
 import { cameraPossible } from "../camera/video-source.js";
-import { buttonOf, html, nothing, render } from "../templates.js";
+import { buttonOf, html, nothing, progressBar, render } from "../templates.js";
 import { takeCamera } from "./take-camera.js";
 import { answerTake, findJudged, sendTake } from "./take-sending.js";
 
@@ -299,11 +299,7 @@ export function showGestures(root, invited, memory) {
       html`<header>
           <h1>${invited.language}</h1>
           <p class="sum" role="status">${countAdded()} of ${entries.length} added</p>
-          <progress
-            max=${entries.length}
-            value=${countAdded()}
-            aria-label="Gestures added"
-          ></progress>
+          ${progressBar("Gestures added", countAdded(), entries.length)}
         </header>
         <section
           class="card ${handsFree ? "live" : ""}"

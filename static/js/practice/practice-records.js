@@ -3,7 +3,7 @@
 import { askWhich, percent, plural } from "../core/format.js";
 import { placeIn, state } from "../core/state.js";
 import { address, go, here } from "../core/views.js";
-import { html, iconButtonOf, nothing } from "../templates.js";
+import { html, iconButtonOf, nothing, progressBar } from "../templates.js";
 
 /** @import { PracticeRecord, PracticeTake } from "../core/types.d.ts" */
 
@@ -66,11 +66,7 @@ export function recordCard(record, remove) {
   return html`<section class="practice-record ${reached ? "reached" : ""}" aria-label=${diver}>
     <h3>${diver}${reached ? " \u2713" : ""}</h3>
     <p>${evidenceOf(record)}</p>
-    <progress
-      aria-label="Takes of ${diver}"
-      max=${Math.max(1, takes + more)}
-      value=${takes}
-    ></progress>
+    ${progressBar(`Takes of ${diver}`, takes, takes + more)}
     ${note(pairs, "asked back with the right gesture: neither right nor an error.")}${note(
       older,
       "with older revisions of the language do not count.",

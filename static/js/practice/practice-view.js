@@ -3,6 +3,7 @@
 
 import { labelInName } from "../clips/clip-label.js";
 import { statusText } from "../clips/clip-store.js";
+import { clipsOfDemonstrations } from "../clips/demonstration-ranges.js";
 import { olderClipsButton } from "../clips/older-clips.js";
 import { takesLanguage } from "../clips/salutes.js";
 import * as api from "../core/api.js";
@@ -30,11 +31,7 @@ const LONGEST_NAME = 80;
 
 /** The clips that can be chosen: their poses are found, and they are not demonstrations. */
 function shownClips() {
-  const demonstrations = new Set(
-    (state.gestures?.gestures ?? []).flatMap(({ demonstrations: all }) =>
-      all.map(({ source }) => source?.clip_id),
-    ),
-  );
+  const demonstrations = new Set(clipsOfDemonstrations(state.gestures));
   return state.clips.filter(({ id, status }) => status === "done" && !demonstrations.has(id));
 }
 
