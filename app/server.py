@@ -76,7 +76,7 @@ from app.api.routes.languages import (
     test_sets,
     triggers,
 )
-from app.api.routes.recognitions import recognition_pages, recognitions
+from app.api.routes.recognitions import recognitions
 from app.api.services.identities import Identities, check_tokens
 from app.api.services.invited_takes import settle_takes
 from app.api.services.running_studio import check_store, open_studio
@@ -178,7 +178,6 @@ def _build_routes() -> tuple[BaseRoute, ...]:
         phrases.router,
         previews.router,
         recognitions.router,
-        recognition_pages.router,
         samples.router,
         events.router,
         sign_in.router,

@@ -8,7 +8,8 @@ import { followJob, reloadClip } from "./clips/clip-store.js";
 import { drawSampleClips } from "./clips/sample-clips.js";
 import * as api from "./core/api.js";
 import { copyLink } from "./core/clipboard.js";
-import { byId, icon } from "./core/dom.js";
+import { byId } from "./core/dom.js";
+import { iconOf, render } from "./templates.js";
 import { bindKeyList } from "./core/key-dialog.js";
 import { listenToKeys } from "./core/key-bindings.js";
 import { drawConnection, followServer } from "./core/server-events.js";
@@ -157,7 +158,7 @@ function reportMissing({ clip, language }) {
 }
 
 async function start() {
-  byId("new-language").append(icon("plus"));
+  render(iconOf("plus"), byId("new-language"));
   const linked = location.search !== "";
   update(readUrl());
   rememberFrame(state.frame);
@@ -166,15 +167,15 @@ async function start() {
   addEventListener("popstate", reloadLanguages);
   followViews(VIEWS);
   listenToKeys();
-  byId("copy-link").append(icon("link"));
-  byId("sun").append(icon("sun"));
+  render(iconOf("link"), byId("copy-link"));
+  render(iconOf("sun"), byId("sun"));
   bindSun();
   byId("copy-link").onclick = copyLink;
   bindKeyList({ loadAll: loadViews, startTour, showExample });
   byId("record-clip").onclick = () => go("live", { source: null });
   byId("make-gestures").onclick = openGestureTable;
   byId("all-takes").onclick = openTakeTable;
-  byId("audit-log").append(icon("list"));
+  render(iconOf("list"), byId("audit-log"));
   byId("audit-log").onclick = async () => {
     const log = await attempt(
       "Loading the audit log",

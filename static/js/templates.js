@@ -71,6 +71,42 @@ export const iconButtonOf = (name, label, run, { writes = false, id, disabled = 
   </button>`;
 
 /**
+ * A button with words.
+ *
+ * @param {unknown} words
+ * @param {() => unknown} run
+ * @param {{ look?: string, writes?: boolean, title?: string, label?: string, id?: string, disabled?: unknown, hidden?: boolean }} [more]
+ */
+export const buttonOf = (words, run, { look, writes, title, label, id, disabled, hidden } = {}) =>
+  html`<button
+    type="button"
+    class=${ifDefined(look)}
+    id=${ifDefined(id)}
+    title=${ifDefined(title)}
+    aria-label=${ifDefined(label)}
+    ?data-writes=${writes}
+    ?disabled=${disabled}
+    ?hidden=${hidden}
+    @click=${run}
+  >
+    ${words}
+  </button>`;
+
+/**
+ * A bar of progress; it moves by itself while the total is not known.
+ *
+ * @param {string} label
+ * @param {number | undefined} done
+ * @param {number | undefined} total
+ */
+export const progressBar = (label, done, total) =>
+  html`<progress
+    aria-label=${label}
+    max=${total || 1}
+    value=${ifDefined(total ? done : undefined)}
+  ></progress>`;
+
+/**
  * Make the element of a template once, for a place that is not drawn from the state.
  *
  * @param {TemplateResult} template

@@ -8,8 +8,10 @@ and indentation stay at home: they are a quarter of the bytes.
 from __future__ import annotations
 
 import re
+from functools import cached_property, lru_cache
 from hashlib import sha256
 from pathlib import Path
+from posixpath import dirname, normpath
 
 from fastapi.responses import FileResponse, HTMLResponse
 from fastapi.staticfiles import StaticFiles
@@ -28,48 +30,12 @@ ADDRESS = "/static"
 INVITATION_ADDRESS = "/invitation"
 """Path of the page of invited people, and of its files."""
 
-INVITATION_FILES = frozenset(
-    {
-        "icon.svg",
-        "invitation-page/invitation-page.css",
-        "styles/base.css",
-        "styles/tokens.css",
-        "js/camera/frame-sender.js",
-        "js/camera/live-socket.js",
-        "js/camera/mirror.js",
-        "js/camera/recording.js",
-        "js/camera/take-end.js",
-        "js/camera/take-steps.js",
-        "js/camera/trouble.js",
-        "js/camera/video-source.js",
-        "js/clips/salute-threshold.js",
-        "js/core/browser-store.js",
-        "js/core/dom.js",
-        "js/core/server.js",
-        "js/core/text-limit.js",
-        "js/invitation/gesture-takes.js",
-        "js/invitation/invitation-view.js",
-        "js/invitation/take-camera.js",
-        "js/invitation/take-sending.js",
-        "js/templates.js",
-        *(
-            f"vendor/lit-html/{name}.js"
-            for name in (
-                "async-directive",
-                "directive",
-                "directive-helpers",
-                "directives/guard",
-                "directives/if-defined",
-                "directives/live",
-                "directives/private-async-helpers",
-                "directives/repeat",
-                "directives/until",
-                "lit-html",
-            )
-        ),
-    }
-)
-"""Files that anybody may fetch: those that the page of invited people needs."""
+_INVITATION_PAGE = "invitation-page/invitation-page.html"
+_NAMED = re.compile(rf'"{INVITATION_ADDRESS.lstrip("/")}/([^"]+)"')
+_IMPORT = re.compile(r'(?:^|;)(?:import|export)[^;"]*?from ?"([^"]+)"', re.MULTILINE)
+
+MOST_STRIPPED = 512
+"""Most scripts and style sheets that are kept without comments: more than the page has."""
 
 _ALL_SHEETS = "styles/all.css"
 """Path of the joined style sheets, in their folder so that relative addresses in them stay
@@ -183,16 +149,28 @@ class InvitationFiles:
     Parameters
     ----------
     folder
-        Folder of its HTML and the files of `INVITATION_FILES`.
+        Folder of its HTML and of its files.
 
     """
 
     def __init__(self, folder: Path) -> None:
         self._folder = folder
 
+    @cached_property
+    def files(self) -> frozenset[str]:
+        """Files that anybody may fetch: those that the page names, and what they import."""
+        needed: set[str] = set()
+        queue = _NAMED.findall((self._folder / _INVITATION_PAGE).read_text(encoding="utf-8"))
+        while queue:
+            if (path := queue.pop()) not in needed:
+                needed.add(path)
+                imports = _IMPORT.findall((self._folder / path).read_text(encoding="utf-8"))
+                queue += [normpath(f"{dirname(path)}/{each}") for each in imports]
+        return frozenset(needed)
+
     def read_page(self) -> Response:
         """Return the page."""
-        return self._answer("invitation-page/invitation-page.html")
+        return self._answer(_INVITATION_PAGE)
 
     def read_file(self, path: str) -> Response:
         """Return one of its files.
@@ -203,7 +181,7 @@ class InvitationFiles:
             404 for any other path.
 
         """
-        if path not in INVITATION_FILES:
+        if path not in self.files:
             raise HTTPException(404)
         return self._answer(path)
 
@@ -225,5 +203,10 @@ def _read_script(file: Path) -> Response:
 
 def _read_bare(file: Path) -> str:
     """Return the text of a file without indentation, with empty lines in place of comments."""
+    return _strip(file, file.stat().st_mtime_ns)
+
+
+@lru_cache(MOST_STRIPPED)
+def _strip(file: Path, _written: int) -> str:
     text = file.read_text(encoding="utf-8")
     return _INDENT.sub("", COMMENT.sub(lambda found: "\n" * found[0].count("\n"), text))

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import shutil
+from typing import Annotated
 
 from fastapi import APIRouter, Request, Response
+from pydantic import Field
 from starlette.concurrency import run_in_threadpool
 
 from app.api.http.problems import ProblemError, problem_responses
 from app.api.http.schemas.clips import ClipAccepted
 from app.api.http.schemas.languages import LanguageView
-from app.api.http.schemas.samples import SampleChoice, SampleLanguageView, SampleView
+from app.api.http.schemas.values import Body, View
 from app.api.ingest.intake import inspect, require_place_in_queue, store
 from app.api.ingest.multipart import display_name
 from app.api.ingest.quotas import SenderQuota, require_quota
@@ -18,6 +20,31 @@ from app.api.services.language_documents import draft_of
 from app.api.services.language_responses import announce, save_language
 from app.api.services.running_studio import CurrentStudio
 from app.api.services.sample_library import SEEDED
+
+
+class SampleView(View):
+    """A clip that comes with the program."""
+
+    name: str
+    size: int
+    """Bytes."""
+
+
+class SampleLanguageView(View):
+    """A language that comes with the program."""
+
+    name: str
+    """By which it is asked for."""
+    title: str
+    """The language's own name."""
+    labels: list[str]
+
+
+class SampleChoice(Body):
+    """Which sample to add."""
+
+    name: Annotated[str, Field(min_length=1, max_length=200)]
+
 
 router = APIRouter(prefix="/samples", tags=["samples"])
 

@@ -20,8 +20,7 @@ from app.api.http.problems import ProblemError
 from app.api.http.schemas.gestures import DemonstrationDraft
 from app.api.jobs.job import compute_in_place
 from app.api.services import gesture_edits
-from app.api.services.demonstration_faults import faults_of_source
-from app.api.services.demonstration_sources import find_sources, keep_source
+from app.api.services.demonstration_sources import faults_of_source, find_sources, keep_source
 from app.api.services.identities import Identities, Identity
 from app.api.services.language_responses import save_revision
 from app.api.services.running_studio import Studio

@@ -11,17 +11,24 @@ from app import store
 from app.api.http.schemas.recognitions import GestureTrial, RecognitionRequest, RecognitionView
 from app.api.services.clip_responses import shows_pictures
 from app.api.services.clip_takes import find_takes
-from app.api.services.demonstration_faults import faults_of_language
-from app.api.services.demonstration_sources import OwnDemonstrations, find_sources
+from app.api.services.demonstration_sources import (
+    OwnDemonstrations,
+    count_triggers_in_clip,
+    faults_of_language,
+    find_sources,
+    sources_in,
+)
 from app.api.services.gesture_edits import change_gesture_of, demonstration_at
 from app.api.services.known_takes import load_known
 from app.api.services.running_studio import Studio
 from app.recognition import Language, PoseSequence, Recognition, Recognizer
 from app.recognition.explanation.context import RecognitionContext
 from app.recognition.explanation.counterfactuals import Counterfactual, Intervention
+from app.recognition.explanation.demonstration_faults import describe_count
 from app.recognition.language.file_schema import TuningEntry, entry_to_tuning
 from app.recognition.language.requirements import require_seen_landmarks
 from app.recognition.recording.clip_range import find_clip_range, find_surroundings
+from app.store import RecognitionRecord
 
 WITHOUT = "without"
 """Key of a stored result: the demonstrations that did not read the take."""
@@ -110,7 +117,7 @@ def load_context(record: store.RecognitionRecord, studio: Studio) -> Recognition
         poses=find_clip_range(recording, record.start, record.end, trigger=language.trigger).poses,
         whole=find_surroundings(recording, record.start, record.end, language.trigger),
         known=tuple(load_known(studio, record.language_id, recognizer, but=record.clip_id)),
-        faults=faults_of_language(studio, language, find_sources(studio, language)),
+        faults=faults_of_language(studio, language),
         closed=not any(
             not take.closed and min(take.end, record.end) > max(take.start, record.start)
             for take in find_takes(studio, record.clip_id, state, so_far=True)
@@ -200,3 +207,36 @@ def load_recognition(record: store.RecognitionRecord) -> Recognition:
 def view_recognition(record: store.RecognitionRecord) -> RecognitionView:
     """Return a stored recognition as the API shows it."""
     return RecognitionView(**(json.loads(record.result) | record.model_dump(exclude={"result"})))
+
+
+def write_notes(
+    studio: Studio, record: RecognitionRecord, language: Language, nearest: str | None = None
+) -> list[str]:
+    """Return a sentence for the range, and for each demonstration of a gesture with a fault.
+
+    Parameters
+    ----------
+    studio
+        Running studio with the clips.
+    record
+        The recognition.
+    language
+        The revision used.
+    nearest
+        Label of the gesture whose demonstrations matter; None: none do.
+
+    """
+    notes = []
+    trigger = language.trigger
+    if count := count_triggers_in_clip(studio, record.clip_id, record.start, record.end, trigger):
+        between = "salutes" if trigger.start is None else "poses"
+        contained = describe_count(trigger, count)
+        notes.append(
+            f"The range that was recognised contains {contained}; choose a take, or a range "
+            f"between the {between}."
+        )
+    if nearest is not None:
+        for source in sources_in(studio, language).get(nearest, []):
+            if source is not None and source.faults:
+                notes.append(source.faults[0].sentence)
+    return notes

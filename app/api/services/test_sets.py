@@ -105,11 +105,10 @@ def list_waiting(
 
     A take that is a demonstration is read by the language without that demonstration.
     """
-    own = OwnDemonstrations(studio, studio.language(state))
     return [
-        (tested.take, _find_own(own, tested.take))
-        for tested in studio.labelled.of(state.record.id)
-        if _is_waiting(_view(studio, tested, own), state.revision.revision)
+        (take, without)
+        for take, without, view in _view_takes(studio, state)
+        if _is_waiting(view, state.revision.revision)
     ]
 
 
@@ -119,8 +118,7 @@ def _is_waiting(take: schemas.LabelledTakeView, revision: int) -> bool:
 
 def view_test_set(studio: Studio, state: store.LanguageState) -> schemas.TestSetView:
     """Return the test set of a language, as of its newest revision."""
-    own = OwnDemonstrations(studio, studio.language(state))
-    takes = [_view(studio, tested, own) for tested in studio.labelled.of(state.record.id)]
+    takes = [view for _, _, view in _view_takes(studio, state)]
     counting = [take for take in takes if not take.set_aside]
     counted = [(take, take.result) for take in takes if take.testable and take.result is not None]
     labels = dict.fromkeys(
@@ -263,10 +261,6 @@ def _rate(takes: Sequence[schemas.LabelledTakeView]) -> dict[str, Any]:
     }
 
 
-def _find_own(own: OwnDemonstrations, take: store.LabelledTake) -> LeftOut:
-    return own.find(take.clip_id, take.start, take.end)
-
-
 def _list_valid(
     studio: Studio, tested: store.TestedTake, without: LeftOut
 ) -> list[store.LabelledResult]:
@@ -293,10 +287,21 @@ def _is_right(take: store.LabelledTake, result: store.LabelledResult) -> bool:
     return result.label == take.expected
 
 
+def _view_takes(
+    studio: Studio, state: store.LanguageState
+) -> Iterator[tuple[store.LabelledTake, LeftOut, schemas.LabelledTakeView]]:
+    """Yield each take of a language, the demonstrations that it is itself, and what is shown."""
+    own = OwnDemonstrations(studio, studio.language(state))
+    for tested in studio.labelled.of(state.record.id):
+        take = tested.take
+        without = own.find(take.clip_id, take.start, take.end)
+        yield take, without, _view(studio, tested, own, without)
+
+
 def _view(
-    studio: Studio, tested: store.TestedTake, own: OwnDemonstrations
+    studio: Studio, tested: store.TestedTake, own: OwnDemonstrations, without: LeftOut
 ) -> schemas.LabelledTakeView:
-    take, without = tested.take, _find_own(own, tested.take)
+    take = tested.take
     set_aside = own.show_former(take.expected, take.former)
     is_testable = own.leave_one(take.expected, without) and not set_aside
     results = [

@@ -1,44 +1,29 @@
 // The drawing over the live picture: the body's skeleton and the hands.
 
 import { svg } from "../core/dom.js";
-import { drawPose, skeleton } from "../clips/skeleton.js";
+import { bonesAlong, drawPose, skeleton } from "../clips/skeleton.js";
 
 /** @import { Seen } from "./live-messages.d.ts" */
 
-/** Pairs of a hand's landmarks joined by a bone, as positions in `HAND_LANDMARKS`. */
-const HAND_BONES = [
-  [0, 1],
-  [1, 2],
-  [2, 3],
-  [3, 4],
-  [0, 5],
-  [5, 6],
-  [6, 7],
-  [7, 8],
-  [5, 9],
-  [9, 10],
-  [10, 11],
-  [11, 12],
-  [9, 13],
-  [13, 14],
-  [14, 15],
-  [15, 16],
-  [13, 17],
+/** The bones of the palm and the fingers, as positions in `HAND_LANDMARKS` of the core. */
+const HAND_BONES = bonesAlong([
+  [0, 1, 2, 3, 4],
+  [0, 5, 6, 7, 8],
+  [5, 9, 10, 11, 12],
+  [9, 13, 14, 15, 16],
+  [13, 17, 18, 19, 20],
   [0, 17],
-  [17, 18],
-  [18, 19],
-  [19, 20],
-];
+]);
 
 /**
- * Make an empty drawing over a picture of `width` x `height` pixels.
+ * Lay an empty drawing over the picture of a video.
  *
- * @param {number} width
- * @param {number} height
+ * @param {HTMLVideoElement} video
  */
-export function overlay(width, height) {
-  const drawing = skeleton(width, height);
+export function overlay(video) {
+  const drawing = skeleton(video.videoWidth, video.videoHeight);
   drawing.append(svg("path", { class: "hand-bones", d: "" }));
+  video.after(drawing);
   return drawing;
 }
 

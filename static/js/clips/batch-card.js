@@ -3,7 +3,7 @@
 import { tabStore } from "../core/browser-store.js";
 import { byId } from "../core/dom.js";
 import { about, plural } from "../core/format.js";
-import { html, nothing, render } from "../templates.js";
+import { html, nothing, progressBar, render } from "../templates.js";
 import { follow, queueOf, secondsLeft } from "./batch.js";
 import { BUSY } from "./busy.js";
 
@@ -55,11 +55,7 @@ export function drawBatch({ clips, jobs, loaded }) {
   const { frames, left } = batch;
   return render(
     html`<b role="status">${title}</b>
-      <progress
-        aria-label="Progress of all clips"
-        max=${frames + left || total}
-        value=${frames || done}
-      ></progress>
+      ${progressBar("Progress of all clips", frames || done, frames + left || total)}
       <span class="dim">${now}</span>`,
     box,
   );

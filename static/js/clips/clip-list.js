@@ -5,7 +5,7 @@ import { byId } from "../core/dom.js";
 import { state } from "../core/state.js";
 import { attempt } from "../core/toasts.js";
 import { recordAction, showDone } from "../core/undo.js";
-import { guard, html, iconButtonOf, ifDefined, nothing, render, repeat } from "../templates.js";
+import { guard, html, iconButtonOf, nothing, progressBar, render, repeat } from "../templates.js";
 import { queueOf } from "./batch.js";
 import { BUSY } from "./busy.js";
 import { countAll, forget, isListed, loadOlder, searchClips } from "./clip-pages.js";
@@ -78,12 +78,7 @@ const button = ({ label, run, icon }) =>
  * @param {Clip} clip
  * @param {Job | undefined} job
  */
-const progress = ({ name }, job) =>
-  html`<progress
-    aria-label="Poses of ${name}"
-    max=${ifDefined(job?.total || undefined)}
-    value=${ifDefined(job?.total ? job.done : undefined)}
-  ></progress>`;
+const progress = ({ name }, job) => progressBar(`Poses of ${name}`, job?.done, job?.total);
 
 /** @param {Clip} clip */
 function item(clip) {

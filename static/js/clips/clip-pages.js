@@ -4,6 +4,7 @@ import * as api from "../core/api.js";
 import { state, update } from "../core/state.js";
 import { attempt } from "../core/toasts.js";
 import { BUSY } from "./busy.js";
+import { clipsOfDemonstrations } from "./demonstration-ranges.js";
 
 /** @import { Clip, ClipPage, State } from "../core/types.d.ts" */
 
@@ -208,10 +209,4 @@ export async function knowClips(ids) {
  * @param {Pick<State, "clip" | "pending" | "gestures">} state
  */
 export const knowReferences = ({ clip, pending, gestures }) =>
-  knowClips([
-    clip,
-    ...pending.map((each) => each.clip),
-    ...(gestures?.gestures ?? []).flatMap(({ demonstrations }) =>
-      demonstrations.map(({ source }) => source?.clip_id),
-    ),
-  ]);
+  knowClips([clip, ...pending.map((each) => each.clip), ...clipsOfDemonstrations(gestures)]);

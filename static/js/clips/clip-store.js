@@ -4,7 +4,7 @@ import * as api from "../core/api.js";
 import { dateAndTime, duration, plural, timeLeft } from "../core/format.js";
 import { h } from "../core/dom.js";
 import { refresh } from "../core/list-refresh.js";
-import { state, update } from "../core/state.js";
+import { placeIn, state, update } from "../core/state.js";
 import { registerUndo } from "../core/undo.js";
 import { placeInQueue } from "./batch-card.js";
 import { forget, newestFirst, take } from "./clip-pages.js";
@@ -47,7 +47,7 @@ export const versionOf = ({ id, turn }) => `${id} ${turn}`;
  */
 export function select(id) {
   if (id === state.clip) return;
-  update({ clip: id, take: null, start: null, end: null, frame: null, recognition: null });
+  update(placeIn(id));
 }
 
 /**

@@ -29,3 +29,13 @@ export const demonstrationOf = ({ clip_id, start, end, keep_transit }) => ({
   end,
   keep_transit,
 });
+
+/**
+ * The clips that demonstrate a language's gestures.
+ *
+ * @param {{ gestures: { demonstrations: { source?: Span | null }[] }[] } | null} language
+ */
+export const clipsOfDemonstrations = (language) =>
+  (language?.gestures ?? []).flatMap(({ demonstrations }) =>
+    demonstrations.flatMap(({ source }) => source?.clip_id ?? []),
+  );

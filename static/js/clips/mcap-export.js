@@ -5,7 +5,7 @@ import { h } from "../core/dom.js";
 import { percent, timeLeft } from "../core/format.js";
 import { follow, state } from "../core/state.js";
 import { toast } from "../core/toasts.js";
-import { html, ifDefined, render } from "../templates.js";
+import { html, progressBar, render } from "../templates.js";
 
 /** @import { ExportProgress } from "../core/types.d.ts" */
 
@@ -68,11 +68,7 @@ function drawStart(box, clip, problem) {
 const advance = (box, progress, cancel) =>
   render(
     html`<span role="status">${exportWords(progress)}</span>
-      <progress
-        aria-label="Progress of the session"
-        max=${ifDefined(progress?.total || undefined)}
-        value=${ifDefined(progress?.total ? progress.done : undefined)}
-      ></progress>
+      ${progressBar("Progress of the session", progress?.done, progress?.total)}
       <button type="button" aria-label="Cancel the session" @click=${cancel}>Cancel</button>`,
     box,
   );

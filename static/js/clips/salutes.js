@@ -1,8 +1,8 @@
 // Salutes along a clip: runs of frames whose salute score is above the threshold.
 
 import { plural } from "../core/format.js";
-import { h, icon } from "../core/dom.js";
 import { follow } from "../core/state.js";
+import { elementOf, html, iconOf } from "../templates.js";
 import { SALUTE } from "./salute-threshold.js";
 
 /** @import { Clip, Language } from "../core/types.d.ts" */
@@ -81,7 +81,9 @@ export const saluteWarning = (salutes, name = "Vulcan salute") =>
 
 /** The hand of a salute, while the language on display has it as trigger. */
 export function saluteHand() {
-  const hand = h("div", { role: "img", "aria-label": "Hand in a Vulcan salute" }, icon("salute"));
+  const hand = elementOf(
+    html`<div role="img" aria-label="Hand in a Vulcan salute">${iconOf("salute")}</div>`,
+  );
   follow(["gestures"], ({ gestures }) => {
     hand.hidden = heldName(gestures) !== HELD.salute;
   });

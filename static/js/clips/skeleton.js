@@ -3,31 +3,26 @@
 import { svg } from "../core/dom.js";
 
 /**
- * Pairs of landmarks joined by a bone: `SKELETON` in poses/landmarks.py of the core, as positions
- * in `POSE_LANDMARKS`.
+ * Bones, as pairs of landmarks, along the chains of joints from the body outwards.
+ *
+ * @param {number[][]} chains
  */
-export const BONES = [
+export const bonesAlong = (chains) =>
+  chains.flatMap((chain) => chain.slice(1).map((end, index) => [chain[index], end]));
+
+/** The bones in `SKELETON` of poses/landmarks.py of the core, as positions in `POSE_LANDMARKS`. */
+export const BONES = bonesAlong([
   [11, 12],
-  [11, 13],
-  [13, 15],
-  [12, 14],
-  [14, 16],
-  [15, 19],
+  [11, 13, 15, 19],
   [15, 17],
   [15, 21],
-  [16, 20],
+  [12, 14, 16, 20],
   [16, 18],
   [16, 22],
-  [11, 23],
-  [12, 24],
+  [11, 23, 25, 27, 31],
+  [12, 24, 26, 28, 32],
   [23, 24],
-  [23, 25],
-  [25, 27],
-  [24, 26],
-  [26, 28],
-  [27, 31],
-  [28, 32],
-];
+]);
 
 /**
  * Make an empty drawing that lies over a picture of `width` x `height` pixels.
@@ -69,4 +64,22 @@ export function drawPose(drawing, pose) {
       .map((point) => `M${point}h0`)
       .join(""),
   );
+}
+
+/**
+ * A line through places, interrupted where one is missing.
+ *
+ * @param {((number | null)[] | null)[]} places
+ */
+export function lineThrough(places) {
+  let down = false;
+  return places
+    .map((place) => {
+      const [x, y] = place ?? [];
+      const isSeen = typeof x === "number" && typeof y === "number";
+      const command = isSeen ? `${down ? "L" : "M"}${x.toFixed(3)} ${y.toFixed(3)}` : "";
+      down = isSeen;
+      return command;
+    })
+    .join("");
 }

@@ -152,6 +152,21 @@ function writeUrl(another) {
   else history.replaceState(null, "", url);
 }
 
+/**
+ * The part of the state that shows a clip, or a range of it and its recognition.
+ *
+ * @param {string | null | undefined} clip
+ * @param {{ recognition?: string | null, start?: number | null, end?: number | null }} [range]
+ */
+export const placeIn = (clip, { recognition = null, start = null, end = null } = {}) => ({
+  clip,
+  recognition,
+  take: null,
+  start,
+  end,
+  frame: null,
+});
+
 /** @returns {Clip | null} */
 export const selectedClip = () => values.clips.find((clip) => clip.id === values.clip) ?? null;
 

@@ -1,6 +1,7 @@
 // The views of the page: one is shown at a time, named in the URL, and imported when first shown.
 
-import { byId, h, reconcile } from "./dom.js";
+import { html, ifDefined, render, repeat } from "../templates.js";
+import { byId } from "./dom.js";
 import { holdKeys } from "./key-bindings.js";
 import { follow, state, update } from "./state.js";
 
@@ -85,17 +86,17 @@ export const here = (run) => (event) => {
  * @param {string} current
  */
 function drawTabs(current) {
-  reconcile(
+  const shown = views.filter(({ name, passing }) => !passing || name === current);
+  const tab = (/** @type {View} */ { name, title }) =>
+    html`<a
+      href=${address(name)}
+      aria-current=${ifDefined(name === current ? "page" : undefined)}
+      @click=${here(() => go(name))}
+      >${title}</a
+    >`;
+  render(
+    repeat(shown, ({ name }) => name, tab),
     byId("views"),
-    views.filter(({ name, passing }) => !passing || name === current),
-    ({ name }) => name,
-    ({ name, title }, known) => {
-      const link = known ?? h("a", { onclick: here(() => go(name)) }, title);
-      link.href = address(name);
-      if (name === current) link.setAttribute("aria-current", "page");
-      else link.removeAttribute("aria-current");
-      return link;
-    },
   );
 }
 

@@ -10,7 +10,7 @@ import { showDone } from "../core/undo.js";
 import { go, guard } from "../core/views.js";
 import { focusCard } from "../gestures/gesture-cards.js";
 import { choose, reloadLanguages } from "../languages/language-store.js";
-import { html, render } from "../templates.js";
+import { buttonOf, html, render } from "../templates.js";
 import { take } from "./demonstration-panel.js";
 import { furtherOf, knownLabel, requestOf, save } from "./draft-saving.js";
 import {
@@ -124,13 +124,9 @@ function actions({ about }) {
 const restored = ({ kept }) =>
   html`<p class="restored" role="status" ?hidden=${kept === null}>
     A draft that was not saved, last changed ${kept && ago(kept)}, is restored.
-    <button
-      type="button"
-      title="Go back to what is saved; Undo brings the draft back"
-      @click=${discard}
-    >
-      Discard the draft
-    </button>
+    ${buttonOf("Discard the draft", discard, {
+      title: "Go back to what is saved; Undo brings the draft back",
+    })}
   </p>`;
 
 /** @param {Editor} shown */

@@ -1,7 +1,7 @@
 // The choice of salient keypoints: for each a checkbox, and a bar that shows how far it moves.
 
 import { readable } from "../core/format.js";
-import { html, live, repeat } from "../templates.js";
+import { buttonOf, html, live, repeat } from "../templates.js";
 import { change, draft } from "./gesture-draft.js";
 
 /** @import { DemonstrationFault, Keypoint, Preview } from "../core/types.d.ts" */
@@ -108,13 +108,9 @@ export function keypoints(preview, shown, draw) {
   return html`<section class="panel keypoints" aria-label="Salient keypoints">
     <div class="panel-head">
       <h2>Salient keypoints</h2>
-      <button
-        type="button"
-        ?disabled=${draft().salient === null || !found.length}
-        @click=${() => change({ salient: null })}
-      >
-        As proposed
-      </button>
+      ${buttonOf("As proposed", () => change({ salient: null }), {
+        disabled: draft().salient === null || !found.length,
+      })}
     </div>
     <p class="dim">${noteOn(preview, found.length)}</p>
     <ul class="bars" aria-label="Keypoints">

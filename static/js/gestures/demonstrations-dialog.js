@@ -6,14 +6,13 @@ import * as api from "../core/api.js";
 import { closeDialog, showDialog } from "../core/dialogs.js";
 import { byId, h } from "../core/dom.js";
 import { moment } from "../core/format.js";
-import { currentLanguage, follow, selectedRange, state } from "../core/state.js";
+import { currentLanguage, follow, placeIn, selectedRange, state } from "../core/state.js";
 import { MAX_DEMONSTRATIONS, MAX_DIVER_LENGTH } from "../core/text-limit.js";
-import { attempt, complain } from "../core/toasts.js";
-import { showDone } from "../core/undo.js";
+import { attempt } from "../core/toasts.js";
 import { address, go, here } from "../core/views.js";
 import { openTrigger } from "../languages/language-trigger.js";
-import { edit } from "../languages/revision-edit.js";
-import { html, limited, nothing, optionsOf, render } from "../templates.js";
+import { editAndShow } from "../languages/revision-edit.js";
+import { buttonOf, html, limited, nothing, optionsOf, render } from "../templates.js";
 import { isHeld, listFollowed, nameShapes } from "./held-shape.js";
 
 /** @import { Clip, Demonstration, DemonstrationFault, Gesture, Source, Take } from "../core/types.d.ts" */
@@ -38,25 +37,6 @@ let followed = false;
 export const withMarks = (thumbnail) =>
   `${api.beside(thumbnail)}${thumbnail.includes("?") ? "&" : "?"}marks=true`;
 
-const SHORT_FAULTS = {
-  whole_clip: "whole clip",
-  contains_salute: "contains a salute",
-  reaches_salute: "reaches the salutes",
-  cut_short: "cut short",
-  contains_rest: "contains rest",
-  other_person: "another person",
-  keypoints_jumped: "keypoints jump",
-  keypoints_missing: "keypoints missing",
-  no_hand: "no hand seen",
-};
-
-/**
- * The gravest fault of a demonstration in a few words, for a tag.
- *
- * @param {Pick<Source, "faults">} source
- */
-export const shortFault = ({ faults }) => SHORT_FAULTS[faults[0].kind];
-
 /**
  * Give a demonstration the range of its clip that mends its fault.
  *
@@ -64,16 +44,14 @@ export const shortFault = ({ faults }) => SHORT_FAULTS[faults[0].kind];
  * @param {Source} source
  * @param {DemonstrationFault} fault
  */
-async function setRange(label, { clip_id }, { start, end }) {
-  try {
-    await edit("Setting the range", `Range of ${label}`, (language) =>
+const setRange = (label, { clip_id }, { start, end }) =>
+  editAndShow(
+    "Setting the range",
+    `Range of ${label}`,
+    (language) =>
       api.languages.changeGesture(language, label, { demonstration: { clip_id, start, end } }),
-    );
-    showDone("Range set", label);
-  } catch (error) {
-    complain(error, "Setting the range");
-  }
-}
+    () => ["Range set", label],
+  );
 
 /**
  * The faults of a demonstration as a note, with the one remedy of the gravest.
@@ -114,16 +92,13 @@ const clipOf = (source) => source && state.clips.find(({ id }) => id === source.
  * @param {string} label
  * @param {number} index
  */
-async function remove(label, index) {
-  try {
-    await edit("Removing the demonstration", `Removal of a demonstration of ${label}`, (language) =>
-      api.languages.removeDemonstration(language, label, index),
-    );
-    showDone("Demonstration removed", label);
-  } catch (error) {
-    complain(error, "Removing the demonstration");
-  }
-}
+const remove = (label, index) =>
+  editAndShow(
+    "Removing the demonstration",
+    `Removal of a demonstration of ${label}`,
+    (language) => api.languages.removeDemonstration(language, label, index),
+    () => ["Demonstration removed", label],
+  );
 
 /**
  * The clip that a demonstration was taken from, as a link to its range.
@@ -133,13 +108,7 @@ async function remove(label, index) {
 function origin(source) {
   const clip = clipOf(source);
   if (!clip || !source) return html`<span class="dim">its clip is not here</span>`;
-  const place = {
-    clip: clip.id,
-    take: null,
-    start: source.start,
-    end: source.end,
-    recognition: null,
-  };
+  const place = placeIn(clip.id, { start: source.start, end: source.end });
   const open = here(() => {
     closeDialog();
     go("studio", place);
@@ -165,16 +134,12 @@ function figure(gesture, demonstration) {
     <span class="dim">${listFollowed(demonstration)}</span>
     <span class="dim">${demonstration.strokes}</span>
     ${origin(source)}${faultNote(gesture.label, index, source)}
-    <button
-      type="button"
-      data-writes
-      ?disabled=${alone}
-      title=${alone ? "The only demonstration stays; delete the gesture instead" : ""}
-      aria-label="Remove ${name.toLowerCase()}"
-      @click=${() => remove(gesture.label, index)}
-    >
-      Remove
-    </button>
+    ${buttonOf("Remove", () => remove(gesture.label, index), {
+      writes: true,
+      title: alone ? "The only demonstration stays; delete the gesture instead" : "",
+      label: `Remove ${name.toLowerCase()}`,
+      disabled: alone,
+    })}
   </li>`;
 }
 
@@ -231,18 +196,15 @@ async function add(event) {
   const body = { label, clip_id: clip, start, end, diver: diver.value.trim() };
   dialog.adding = true;
   draw();
-  try {
-    await edit("Adding the demonstration", `Another demonstration of ${label}`, (language) =>
-      api.languages.addDemonstration(language, body),
-    );
-    diver.value = "";
-    showDone("Demonstration added", label);
-  } catch (error) {
-    complain(error, "Adding the demonstration");
-  } finally {
-    dialog.adding = false;
-    draw();
-  }
+  const added = await editAndShow(
+    "Adding the demonstration",
+    `Another demonstration of ${label}`,
+    (language) => api.languages.addDemonstration(language, body),
+    () => ["Demonstration added", label],
+  );
+  if (added) diver.value = "";
+  dialog.adding = false;
+  draw();
 }
 
 /**

@@ -2,36 +2,31 @@
 
 import { expectedOf, NONE } from "../languages/test-set.js";
 import { labelInName } from "../clips/clip-label.js";
+import { endName } from "../clips/salutes.js";
 import * as api from "../core/api.js";
 import { byId, h } from "../core/dom.js";
-import { plural } from "../core/format.js";
+import { plural, readable } from "../core/format.js";
 import { currentLanguage, selectedClip, state } from "../core/state.js";
-import { complain } from "../core/toasts.js";
-import { showDone } from "../core/undo.js";
 import { go } from "../core/views.js";
-import { edit } from "../languages/revision-edit.js";
+import { editAndShow } from "../languages/revision-edit.js";
 import { openSettings } from "../languages/settings-dialog.js";
-import { html, iconButtonOf, nothing, render, repeat } from "../templates.js";
+import { buttonOf, html, iconButtonOf, nothing, render, repeat } from "../templates.js";
 import { isHeld, listFollowed, nameShapes } from "./held-shape.js";
-import { openDemonstrations, shortFault, withMarks } from "./demonstrations-dialog.js";
+import { openDemonstrations, withMarks } from "./demonstrations-dialog.js";
 
 /** @import { Gesture, Language, Recognition, State } from "../core/types.d.ts" */
 
 /** @param {Gesture} gesture */
-async function remove(gesture) {
+function remove(gesture) {
   const from = currentLanguage();
   const mine = { ...from, gestures: from.gestures.filter((each) => each.label !== gesture.label) };
-  try {
-    await edit(
-      "Deleting the gesture",
-      `Deletion of ${gesture.label}`,
-      (language) => api.languages.removeGesture(language, gesture.label),
-      { from, mine },
-    );
-    showDone("Gesture deleted", gesture.label);
-  } catch (error) {
-    complain(error, "Deleting the gesture");
-  }
+  editAndShow(
+    "Deleting the gesture",
+    `Deletion of ${gesture.label}`,
+    (language) => api.languages.removeGesture(language, gesture.label),
+    () => ["Gesture deleted", gesture.label],
+    { from, mine },
+  );
 }
 
 /**
@@ -41,9 +36,10 @@ async function remove(gesture) {
  */
 function faultTag({ demonstrations }) {
   const bad = demonstrations.map(({ source }) => source).find((source) => source?.faults.length);
-  return bad
-    ? html`<span class="tag fault" title=${bad.faults[0].sentence}>${shortFault(bad)}</span>`
-    : nothing;
+  if (!bad) return nothing;
+  const [{ kind, sentence }] = bad.faults;
+  const words = readable(kind).replace("salute", endName(state.gestures));
+  return html`<span class="tag fault" title=${sentence}>${words}</span>`;
 }
 
 /**
@@ -74,14 +70,10 @@ function card(gesture) {
       <b title=${label}>${label}</b>
       <span>${description || listFollowed(gesture)}</span>
       ${strokes ? html`<span title="Strokes: ${strokes}">${strokes}</span>` : nothing}
-      <button
-        type="button"
-        class="link"
-        aria-label="${count} of ${label}"
-        @click=${() => openDemonstrations(label)}
-      >
-        ${count}
-      </button>
+      ${buttonOf(count, () => openDemonstrations(label), {
+        look: "link",
+        label: `${count} of ${label}`,
+      })}
       ${mark ? html`<span class="tag ${mark}">${tag}</span>` : nothing}${faultTag(gesture)}
     </div>
     <div class="card-buttons">

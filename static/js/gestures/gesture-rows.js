@@ -1,5 +1,6 @@
 // The rows of the table that makes gestures of clips: one per take, with a proposed label.
 
+import { clipsOfDemonstrations } from "../clips/demonstration-ranges.js";
 import { labelInName } from "../clips/clip-label.js";
 import { moment, plural } from "../core/format.js";
 import { withoutJoiners } from "../core/joiners.js";
@@ -27,18 +28,6 @@ export function labelOf(name) {
 }
 
 /**
- * The clips that the language's demonstrations come from.
- *
- * @param {Language | null} language
- */
-const demonstrated = (language) =>
-  new Set(
-    (language?.gestures ?? []).flatMap(({ demonstrations }) =>
-      demonstrations.map(({ source }) => source?.clip_id),
-    ),
-  );
-
-/**
  * The label unless the language has the range as a demonstration of that gesture already; else "".
  *
  * @param {string} label
@@ -62,7 +51,7 @@ export function labelIfNew(label, { gestures }, { clip_id: clip, start, end }) {
  * @param {Language | null} language
  */
 export function withoutGesture(clips, language) {
-  const shown = demonstrated(language);
+  const shown = new Set(clipsOfDemonstrations(language));
   return clips.filter(({ id }) => !shown.has(id));
 }
 
@@ -84,7 +73,7 @@ export const readingAt = (/** @type {string} */ clip, /** @type {number} */ numb
  * @returns {GestureRow[]}
  */
 export function rowsOf(clips, takes, language, edited, readings = new Map()) {
-  const shown = demonstrated(language);
+  const shown = new Set(clipsOfDemonstrations(language));
   const labels = language?.labels ?? [];
   const known = new Map(labels.map((label) => [withoutJoiners(label), label]));
   /** @type {Set<string>} */

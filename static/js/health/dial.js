@@ -3,9 +3,7 @@
 import * as api from "../core/api.js";
 import { currentLanguage } from "../core/state.js";
 import { html, live } from "../templates.js";
-import { complain } from "../core/toasts.js";
-import { showDone } from "../core/undo.js";
-import { edit } from "../languages/revision-edit.js";
+import { editAndShow } from "../languages/revision-edit.js";
 import { costWords, percent } from "./rates.js";
 
 /** @import { HealthReport, State } from "../core/types.d.ts" */
@@ -13,14 +11,14 @@ import { costWords, percent } from "./rates.js";
 const SHARES = [0.02, 0.05, 0.1, 0.2];
 
 /** @param {number} share */
-async function turn(share) {
+function turn(share) {
   const words = `Refusing at most ${percent(share)} % of right takes`;
-  try {
-    await edit(words, words, (language) => api.languages.change(language, { most_refused: share }));
-    showDone(words, currentLanguage().name);
-  } catch (error) {
-    complain(error, words);
-  }
+  return editAndShow(
+    words,
+    words,
+    (language) => api.languages.change(language, { most_refused: share }),
+    ({ name }) => [words, name],
+  );
 }
 
 /** @param {Event & { target: HTMLSelectElement }} event */

@@ -4,7 +4,7 @@ import * as api from "../core/api.js";
 import { state, update } from "../core/state.js";
 import { attempt } from "../core/toasts.js";
 import { edit } from "../languages/revision-edit.js";
-import { html, nothing } from "../templates.js";
+import { buttonOf, html, nothing } from "../templates.js";
 import { go } from "../core/views.js";
 import { compare, editLink } from "./finding-links.js";
 import { changeButton } from "./replacements.js";
@@ -39,21 +39,13 @@ const decideHands = (labels, position) =>
  * @param {string[]} labels
  */
 const handAnswers = (labels) =>
-  html`<button
-      type="button"
-      data-writes
-      title="The hand shape tells them apart"
-      @click=${() => decideHands(labels, "on")}
-    >
-      Yes</button
-    ><button
-      type="button"
-      data-writes
-      title="Any hand may show them"
-      @click=${() => decideHands(labels, "off")}
-    >
-      No
-    </button>`;
+  html`${buttonOf("Yes", () => decideHands(labels, "on"), {
+    writes: true,
+    title: "The hand shape tells them apart",
+  })}${buttonOf("No", () => decideHands(labels, "off"), {
+    writes: true,
+    title: "Any hand may show them",
+  })}`;
 
 /**
  * @param {Finding} finding

@@ -1,7 +1,7 @@
 // The table of what is known of each gesture, measured takes first.
 
 import { duration, readable } from "../core/format.js";
-import { html } from "../templates.js";
+import { buttonOf, html } from "../templates.js";
 import { compare, editLink } from "./finding-links.js";
 import { intervalText, percent } from "./rates.js";
 
@@ -66,14 +66,10 @@ function unseen(gesture) {
 function nearest({ label, nearest: other }) {
   if (!other) return UNKNOWN;
   return html`<td class="nearest">
-    <button
-      type="button"
-      class="link"
-      title="Compare ${label} and ${other.label}"
-      @click=${() => compare(label, other.label)}
-    >
-      ${other.label}</button
-    ><small class="dim num"> ${other.distance.toFixed(2)}</small>
+    ${buttonOf(other.label, () => compare(label, other.label), {
+      look: "link",
+      title: `Compare ${label} and ${other.label}`,
+    })}<small class="dim num"> ${other.distance.toFixed(2)}</small>
   </td>`;
 }
 

@@ -4,7 +4,7 @@ import * as api from "../core/api.js";
 import { h } from "../core/dom.js";
 import { plural } from "../core/format.js";
 import { currentLanguage, follow, state } from "../core/state.js";
-import { guard, html, ifDefined, nothing, render } from "../templates.js";
+import { guard, html, nothing, progressBar, render } from "../templates.js";
 import { attempt } from "../core/toasts.js";
 import { go } from "../core/views.js";
 import { takeFilesIn } from "../upload/upload-list.js";
@@ -92,11 +92,7 @@ function progress(state) {
   const { words, total, done } = advanceOf(state);
   return html`<div class="checking">
     <p><b>Checking revision ${health.revision}</b><span class="dim num">${words}</span></p>
-    <progress
-      aria-label="Progress of the check"
-      max=${total ?? 1}
-      value=${ifDefined(done)}
-    ></progress>
+    ${progressBar("Progress of the check", done, total)}
     <button type="button" data-writes @click=${() => attempt("Cancelling", cancel)}>Cancel</button>
   </div>`;
 }

@@ -6,9 +6,9 @@ import { closeDialog, showDialog } from "../core/dialogs.js";
 import { byId } from "../core/dom.js";
 import { ago, dateAndTime, plural } from "../core/format.js";
 import { currentLanguage, state, update } from "../core/state.js";
-import { elementOf, guard, html, nothing, repeat, until } from "../templates.js";
+import { buttonOf, elementOf, guard, html, nothing, repeat, until } from "../templates.js";
 import { MAX_DEMONSTRATIONS } from "../core/text-limit.js";
-import { complain, toast } from "../core/toasts.js";
+import { attempt, toast } from "../core/toasts.js";
 
 /** @import { HealthReport, Invitation, NewInvitation, ReceivedTake, ReceivedTakeOutlook, State } from "../core/types.d.ts" */
 
@@ -112,14 +112,10 @@ function takeRow(invitation, take, settle) {
   const { label, diver, status } = take;
   const held = isHeld(take);
   const button = (/** @type {"added" | "removed"} */ next, /** @type {string} */ words) =>
-    html`<button
-      type="button"
-      data-writes
-      aria-label="${words} ${label} by ${diver}"
-      @click=${() => settle(take, next)}
-    >
-      ${words}
-    </button>`;
+    buttonOf(words, () => settle(take, next), {
+      writes: true,
+      label: `${words} ${label} by ${diver}`,
+    });
   return html`<li class="received ${held ? "held" : status}">
     <span><b>${label}</b> by ${diver}</span><span class="dim">${outcome(take)}</span>${
       held || status === "removed" ? button("added", "Add") : nothing
@@ -238,16 +234,17 @@ export async function loadInvitations({ view, gestures }) {
  * @param {...ReceivedTake} takes
  */
 async function settle(language, invitation, status, ...takes) {
-  const other = status === "added" ? "removed" : "added";
+  /** @type {[string, "added" | "removed", string]} */
+  const [doing, other, label] =
+    status === "added"
+      ? ["Adding the take", "removed", "Remove it again"]
+      : ["Removing the take", "added", "Add it after all"];
   const of = takes.length > 1 ? plural(takes.length, "take") : `Take of ${takes[0].label}`;
-  try {
+  await attempt(doing, async () => {
     for (const take of takes) await api.invitations.settle(language, invitation, take.id, status);
     const back = () => settle(language, invitation, other, ...takes);
-    const label = other === "added" ? "Add it after all" : "Remove it again";
     toast(`${of} ${status}`, takes[0].diver, { action: { label, run: back } });
-  } catch (error) {
-    complain(error, status === "added" ? "Adding the take" : "Removing the take");
-  }
+  });
   loadInvitations(state);
 }
 
@@ -256,15 +253,13 @@ async function settle(language, invitation, status, ...takes) {
  * @param {string} invitation
  */
 async function withdraw(language, invitation) {
-  try {
+  await attempt("Withdrawing the invitation", async () => {
     await api.invitations.withdraw(language, invitation);
     toast(
       "Invitation withdrawn",
       "Its link does nothing any more. What was added stays, until you take it back.",
     );
-  } catch (error) {
-    complain(error, "Withdrawing the invitation");
-  }
+  });
   loadInvitations(state);
 }
 
@@ -313,14 +308,10 @@ export function invitationsPart({ gestures, invitations }, report) {
       (each) => row(gestures?.id ?? "", each),
     );
   return html`<div class="invite" ?hidden=${!gestures?.gestures.length}>
-    <button
-      type="button"
-      class=${report?.forecast.asks_more ? "primary" : ""}
-      data-writes
-      @click=${openForm}
-    >
-      Invite people
-    </button>
+    ${buttonOf("Invite people", openForm, {
+      look: report?.forecast.asks_more ? "primary" : "",
+      writes: true,
+    })}
     <ul class="invitations" aria-label="Invitations" ?hidden=${!kept.length}>
       ${guard([JSON.stringify(kept)], rows)}
     </ul>

@@ -1,5 +1,6 @@
 // A demonstration as a drawing: the diver's arms at one moment, and the paths of the hands.
 
+import { lineThrough } from "../clips/skeleton.js";
 import { svg } from "../core/dom.js";
 
 /** @import { PairDifference, Place } from "../core/types.d.ts" */
@@ -59,26 +60,6 @@ function placeAt({ time }, path, seconds) {
 }
 
 /**
- * A line through places, interrupted where one is missing.
- *
- * @param {Place[]} places
- */
-function line(places) {
-  let down = false;
-  return places
-    .map((place) => {
-      if (!place) {
-        down = false;
-        return "";
-      }
-      const command = `${down ? "L" : "M"}${place[0].toFixed(3)} ${place[1].toFixed(3)}`;
-      down = true;
-      return command;
-    })
-    .join("");
-}
-
-/**
  * Make a drawing of a gesture; `show(seconds)` moves it to a moment.
  *
  * @param {Paths} gesture
@@ -93,7 +74,7 @@ export function movingPaths(gesture, box) {
    */
   const path = (name, d = "") => svg("path", { class: name, d });
   const [bones, trail, dots] = [path("bones"), path("trail"), path("dots")];
-  const whole = path("whole", followed.map((name) => line(paths[name])).join(""));
+  const whole = path("whole", followed.map((name) => lineThrough(paths[name])).join(""));
   const drawing = svg(
     "svg",
     {
@@ -115,12 +96,12 @@ export function movingPaths(gesture, box) {
     bones.setAttribute(
       "d",
       BONES.filter(([from, to]) => at(from) && at(to))
-        .map(([from, to]) => line([at(from), at(to)]))
+        .map(([from, to]) => lineThrough([at(from), at(to)]))
         .join(""),
     );
     trail.setAttribute(
       "d",
-      followed.map((name) => line([...paths[name].slice(0, passed + 1), at(name)])).join(""),
+      followed.map((name) => lineThrough([...paths[name].slice(0, passed + 1), at(name)])).join(""),
     );
     // A line without length has round ends: a dot.
     dots.setAttribute(

@@ -1,9 +1,10 @@
 // The time cursor over two aligned demonstrations of different duration.
 
-import { h, icon, svg } from "../core/dom.js";
+import { h, svg } from "../core/dom.js";
 import { moment } from "../core/format.js";
 import { bind } from "../core/key-bindings.js";
 import { state } from "../core/state.js";
+import { iconOf, render } from "../templates.js";
 
 /** @import { PairDifference } from "../core/types.d.ts" */
 
@@ -86,7 +87,7 @@ export function timeCursor(steps, labels, show) {
   let timer;
   const face = () => {
     const text = timer ? "Pause" : "Play both";
-    play.replaceChildren(icon(timer ? "pause" : "play"));
+    render(iconOf(timer ? "pause" : "play"), play);
     play.setAttribute("aria-label", text);
     play.title = `${text} (Space)`;
   };

@@ -2,6 +2,7 @@
 
 import { labelInName } from "../clips/clip-label.js";
 import { BUSY } from "../clips/busy.js";
+import { clipsOfDemonstrations } from "../clips/demonstration-ranges.js";
 import * as api from "../core/api.js";
 import { tabStore } from "../core/browser-store.js";
 import { state, update } from "../core/state.js";
@@ -48,9 +49,7 @@ export function candidates() {
   const taken = new Set([
     ...(state.testSet?.takes ?? []).map(({ clip_id }) => clip_id),
     ...state.pending.filter(({ language }) => language === state.language).map(({ clip }) => clip),
-    ...(state.gestures?.gestures ?? []).flatMap(({ demonstrations }) =>
-      demonstrations.map(({ source }) => source?.clip_id),
-    ),
+    ...clipsOfDemonstrations(state.gestures),
   ]);
   return state.clips
     .filter(({ id, status }) => status === "done" && !taken.has(id))

@@ -2,8 +2,8 @@
 
 import { statusText } from "../clips/clip-store.js";
 import { askWhich } from "../core/format.js";
-import { state } from "../core/state.js";
-import { html, ifDefined, iconOf, live } from "../templates.js";
+import { placeIn, state } from "../core/state.js";
+import { buttonOf, html, iconButtonOf, live, progressBar } from "../templates.js";
 import { address, go, here } from "../core/views.js";
 import { labelTake, NONE } from "../languages/test-set.js";
 import { leaveOut, leaveWaiting, means } from "./test-set-clips.js";
@@ -48,23 +48,6 @@ function labelSelect(name, value, choose) {
   </select>`;
 }
 
-/**
- * @param {string} label
- * @param {() => unknown} run
- * @param {boolean} [writes]
- */
-const closeButton = (label, run, writes = false) =>
-  html`<button
-    type="button"
-    class="quiet icon"
-    title=${label}
-    aria-label=${label}
-    ?data-writes=${writes}
-    @click=${run}
-  >
-    ${iconOf("close")}
-  </button>`;
-
 export const uploadsHere = () => state.uploads.filter(({ uploaded }) => uploaded);
 
 /**
@@ -81,18 +64,6 @@ const waiting = (name, { shows, text, progress, close }) =>
     <td>${close}</td>
   </tr>`;
 
-/**
- * @param {string} label
- * @param {number | undefined} done
- * @param {number | undefined} total
- */
-const bar = (label, done, total) =>
-  html`<progress
-    aria-label=${label}
-    max=${total || 1}
-    value=${ifDefined(total ? done : undefined)}
-  ></progress>`;
-
 /** @param {WaitingClip} waiting */
 export function waitingRow({ clip, expected, busy }) {
   const job = state.jobs.get(clip.job_id);
@@ -104,8 +75,8 @@ export function waitingRow({ clip, expected, busy }) {
         : expected
           ? "Recognising"
           : "Choose its label",
-    progress: busy ? bar(`Poses of ${clip.name}`, job?.done, job?.total) : "",
-    close: closeButton(`Leave ${clip.name} out of the test`, () => leaveWaiting(clip)),
+    progress: busy ? progressBar(`Poses of ${clip.name}`, job?.done, job?.total) : "",
+    close: iconButtonOf("close", `Leave ${clip.name} out of the test`, () => leaveWaiting(clip)),
   });
 }
 
@@ -119,8 +90,10 @@ export const uploadRow = ({ file, status, cancel, error, loaded, total }) =>
         : status === "waiting"
           ? "Waiting for the other uploads"
           : "Uploading",
-    progress: status === "failed" ? "" : bar(`Upload of ${file.name}`, loaded, Math.max(1, total)),
-    close: status === "uploading" && cancel ? closeButton(`Cancel ${file.name}`, cancel) : "",
+    progress:
+      status === "failed" ? "" : progressBar(`Upload of ${file.name}`, loaded, Math.max(1, total)),
+    close:
+      status === "uploading" && cancel ? iconButtonOf("close", `Cancel ${file.name}`, cancel) : "",
   });
 
 /**
@@ -131,15 +104,9 @@ export const uploadRow = ({ file, status, cancel, error, loaded, total }) =>
  */
 export function placeOf(take, takes) {
   const alone = takes.filter((each) => each.clip_id === take.clip_id).length === 1;
-  return {
-    clip: take.clip_id,
-    recognition: take.recognition_id,
-    take: null,
-    start: alone ? null : take.start,
-    end: alone ? null : take.end,
-    frame: null,
-    pair: null,
-  };
+  const { recognition_id: recognition, start, end } = take;
+  const range = alone ? { recognition } : { recognition, start, end };
+  return { ...placeIn(take.clip_id, range), pair: null };
 }
 
 /**
@@ -163,15 +130,11 @@ function notesOf({ fault, demonstration, pair, expected, label, nearest }) {
  */
 function outcomeOf(take) {
   if (take.set_aside)
-    return html`<span class="dim">set aside: the gesture has another movement now</span>
-      <button
-        type="button"
-        class="link"
-        data-writes
-        @click=${() => labelTake(take.id, take.expected)}
-      >
-        Count it again
-      </button>`;
+    return html`<span class="dim">set aside: the gesture has another movement now</span> ${buttonOf(
+        "Count it again",
+        () => labelTake(take.id, take.expected),
+        { look: "link", writes: true },
+      )}`;
   if (!take.testable)
     return html`<span class="dim"
       >cannot be tested:
@@ -212,6 +175,10 @@ export function takeRow(take, takes) {
     <td>${labelSelect(name, take.expected, (label) => labelTake(take.id, label))}</td>
     <td>${outcomeOf(take)}</td>
     <td class="num">${take.recognition_id ? `${Math.round(100 * take.confidence)} %` : ""}</td>
-    <td>${closeButton(`Leave ${name} out of the test`, () => leaveOut(take, name), true)}</td>
+    <td>
+      ${iconButtonOf("close", `Leave ${name} out of the test`, () => leaveOut(take, name), {
+        writes: true,
+      })}
+    </td>
   </tr>`;
 }

@@ -1,10 +1,10 @@
 // The section of the test with clips: dropping clips, correcting labels, confusion matrix, list.
 
 import { olderClipsButton } from "../clips/older-clips.js";
-import { h } from "../core/dom.js";
+import { saveFile } from "../clips/mcap-export.js";
 import { plural } from "../core/format.js";
 import { currentLanguage, state, update } from "../core/state.js";
-import { guard, html, live, nothing, repeat } from "../templates.js";
+import { buttonOf, guard, html, live, nothing, progressBar, repeat } from "../templates.js";
 import { go } from "../core/views.js";
 import { cancelTestRun, changeWords, NONE, runTestSet } from "../languages/test-set.js";
 import { csvOf, testedOf } from "./test-set-results.js";
@@ -28,8 +28,6 @@ import { testedText } from "./rates.js";
 /** @import { TestSet } from "../core/types.d.ts" */
 
 /** @import { TestedTake } from "./test-set-results.js" */
-
-const SAVED_BY = 60000; // ms. A busy browser may read the file long after the click.
 
 /** @type {Map<string, boolean>} */
 const ticks = new Map(); // Clips of the library that the user has chosen or not.
@@ -95,11 +93,11 @@ function matrix(takes) {
 }
 
 /** @param {TestedTake[]} takes */
-function download(takes) {
-  const url = URL.createObjectURL(new Blob([csvOf(takes)], { type: "text/csv" }));
-  h("a", { href: url, download: `${currentLanguage().name} test.csv` }).click();
-  setTimeout(() => URL.revokeObjectURL(url), SAVED_BY);
-}
+const download = (takes) =>
+  saveFile({
+    name: `${currentLanguage().name} test.csv`,
+    content: new Blob([csvOf(takes)], { type: "text/csv" }),
+  });
 
 /**
  * How many takes were asked back, and of how many the right gesture is in the pair.
@@ -172,12 +170,14 @@ function runControl({ waiting }) {
   const { testing } = state;
   if (testing)
     return html`<span class="test-run" role="status"
-      >${testing.done} of ${plural(testing.total, "take")} recognised<progress
-        aria-label="Progress of the test"
-        max=${Math.max(1, testing.total)}
-        value=${testing.done}
-      ></progress
-      ><button type="button" data-writes @click=${cancelTestRun}>Cancel</button></span
+      >${testing.done} of ${plural(testing.total, "take")}
+      recognised${progressBar("Progress of the test", testing.done, testing.total)}<button
+        type="button"
+        data-writes
+        @click=${cancelTestRun}
+      >
+        Cancel
+      </button></span
     >`;
   return waiting
     ? html`<button type="button" class="primary" data-writes @click=${() => runTestSet()}>
@@ -222,13 +222,12 @@ function list(takes) {
   const filter =
     cell &&
     html`<p class="test-filter" role="status">
-      Only takes of ${cell[0]} ${cell[1] === ASKED ? "" : "read as "}${cell[1]}<button
-        type="button"
-        class="link"
-        @click=${() => update({ cell: null })}
-      >
-        Show all
-      </button>
+      Only takes of ${cell[0]}
+      ${cell[1] === ASKED ? "" : "read as "}${cell[1]}${buttonOf(
+        "Show all",
+        () => update({ cell: null }),
+        { look: "link" },
+      )}
     </p>`;
   return html`${filter}
     <div class="confusion-scroll">

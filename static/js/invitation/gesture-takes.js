@@ -2,7 +2,7 @@
 
 import { howTo, isSlow, situation } from "../camera/take-steps.js";
 import { cameraPossible } from "../camera/video-source.js";
-import { html, nothing, render } from "../templates.js";
+import { buttonOf, html, nothing, progressBar, render } from "../templates.js";
 import { takeCamera } from "./take-camera.js";
 import { answerTake, findJudged, sendTake } from "./take-sending.js";
 
@@ -41,14 +41,6 @@ const TO_SHOW = ["asked", "open", "returned", "failed"];
 
 /** @param {string} text */
 export const capital = (text) => text.charAt(0).toUpperCase() + text.slice(1);
-
-/**
- * @param {string} words
- * @param {() => unknown} run
- * @param {string} [look]
- */
-const button = (words, run, look = "") =>
-  html`<button type="button" class=${look} @click=${run}>${words}</button>`;
 
 /**
  * Show the gestures of a language one after the other, and send the takes.
@@ -150,8 +142,8 @@ export function showGestures(root, invited, memory) {
    * @param {Entry} entry
    */
   const answers = (entry) => [
-    button("Yes, it is", () => follow(entry, entry.id, true)),
-    button("Show it again", () => follow(entry, entry.id, false)),
+    buttonOf("Yes, it is", () => follow(entry, entry.id, true)),
+    buttonOf("Show it again", () => follow(entry, entry.id, false)),
   ];
 
   /**
@@ -227,11 +219,11 @@ export function showGestures(root, invited, memory) {
       <div>
         ${
           TO_SHOW.includes(standing) && !handsFree
-            ? button(gesture.label, () => choose(entry), "link")
+            ? buttonOf(gesture.label, () => choose(entry), { look: "link" })
             : html`<b>${gesture.label}</b>`
         }<span>${WORDS[standing]}${sent}</span>${why ? html`<span class="dim">${why}</span>` : nothing}
       </div>
-      ${cancel ? button("Cancel", cancel) : nothing}
+      ${cancel ? buttonOf("Cancel", cancel) : nothing}
     </li>`;
   }
 
@@ -307,11 +299,7 @@ export function showGestures(root, invited, memory) {
       html`<header>
           <h1>${invited.language}</h1>
           <p class="sum" role="status">${countAdded()} of ${entries.length} added</p>
-          <progress
-            max=${entries.length}
-            value=${countAdded()}
-            aria-label="Gestures added"
-          ></progress>
+          ${progressBar("Gestures added", countAdded(), entries.length)}
         </header>
         <section
           class="card ${handsFree ? "live" : ""}"
@@ -359,9 +347,9 @@ export function showGestures(root, invited, memory) {
     if (standing === "asked") return answers(entry);
     const first =
       standing === "failed" && file
-        ? button("Send again", () => send(entry, file), "primary")
+        ? buttonOf("Send again", () => send(entry, file), { look: "primary" })
         : cameraPossible()
-          ? button("Show hands-free", beginHandsFree, "primary")
+          ? buttonOf("Show hands-free", beginHandsFree, { look: "primary" })
           : nothing;
     return [
       first,
@@ -390,14 +378,14 @@ export function showGestures(root, invited, memory) {
       const timer = setTimeout(() => finish(true), SHOW_MS);
       signal.addEventListener("abort", () => finish(false), { once: true });
       say("This is sent in a moment.", [
-        button("Send now", () => finish(true), "primary"),
-        button("Show it again", () => finish(false)),
+        buttonOf("Send now", () => finish(true), { look: "primary" }),
+        buttonOf("Show it again", () => finish(false)),
         stopButton(),
       ]);
     });
   }
 
-  const stopButton = () => button("Stop", () => endHandsFree());
+  const stopButton = () => buttonOf("Stop", () => endHandsFree());
 
   /** @param {Entry} entry */
   async function takeOne(entry) {
@@ -406,7 +394,7 @@ export function showGestures(root, invited, memory) {
     const { label, seconds: length } = entry.gesture;
     const { trigger } = invited;
     const seconds = Math.min(LONGEST, Math.ceil(length ?? 2) + AROUND[trigger]);
-    const done = button("Done", () => taking?.abort("done"));
+    const done = buttonOf("Done", () => taking?.abort("done"));
     const file = await camera.take({ seconds, trigger, signal: taking.signal }, (at, seen) => {
       if (at === "ready") return say(`Next: ${label}. Step back.`, [stopButton()]);
       const [, words] = seen ? situation(seen, trigger) : ["", instructions];

@@ -1,18 +1,10 @@
 // The live camera of an invited person: it records a gesture hands-free, after a countdown.
 
-import { frameSender } from "../camera/frame-sender.js";
-import { openLink } from "../camera/live-socket.js";
-import { mirror } from "../camera/mirror.js";
+import { startCamera } from "../camera/camera.js";
 import { countDown, record } from "../camera/recording.js";
 import { takeEnd } from "../camera/take-end.js";
-import { drawTrouble } from "../camera/trouble.js";
-import {
-  cameraLost,
-  release,
-  showCamera,
-  watchFrames,
-  whyNoCamera,
-} from "../camera/video-source.js";
+import { release } from "../camera/video-source.js";
+import { watch } from "../camera/watching.js";
 import { elementOf, html } from "../templates.js";
 import { token } from "./take-sending.js";
 
@@ -54,13 +46,13 @@ function watchTake(video, trigger, seen) {
   const end = takeEnd(() => {
     look.over = true;
   });
-  /** @type {(() => void) | null} */
-  let stopFrames = null;
-  const link = openLink(
+  let begun = false;
+  const watching = watch(
+    video,
     {
       seen: (answer) => {
         end.seen(answer);
-        if (stopFrames) seen(answer);
+        if (begun) seen(answer);
       },
       recognized: (/** @type {Recognized} */ result) => end.recognized(result, trigger),
       listening: () => {},
@@ -70,16 +62,15 @@ function watchTake(video, trigger, seen) {
     },
     { path: "/invited/live", protocols: ["osg-studio.take", token()] },
   );
-  const send = frameSender(video, link);
   // The server's first look takes longest: it is over when the recording begins. No more pictures
   // before: a salute in the countdown is no part of the recording.
-  void link.opened.then(() => send(video.currentTime, performance.now() / 1000));
+  void watching.opened.then(() => watching.look(video.currentTime));
   look.begin = () => {
-    stopFrames = watchFrames(video, send);
+    begun = true;
+    watching.begin();
   };
   look.stop = () => {
-    stopFrames?.();
-    link.close();
+    watching.stop();
     end.reset();
   };
   return look;
@@ -110,20 +101,12 @@ export function takeCamera({ ended, again }) {
   async function start() {
     audio ??= new AudioContext(); // Phones allow it only while a button is pressed.
     element.hidden = false;
-    drawTrouble(trouble, null, again);
-    try {
-      await showCamera(video, "", () => {
-        drawTrouble(trouble, cameraLost(INSTEAD), again);
-        stop();
-        ended();
-      });
-    } catch (error) {
-      drawTrouble(trouble, whyNoCamera(error, INSTEAD), again);
-      release(video);
-      return false;
-    }
-    mirror(element, video);
-    return true;
+    const lost = () => {
+      stop();
+      ended();
+    };
+    const place = { video, picture: element, box: trouble };
+    return startCamera(place, { instead: INSTEAD, again, lost });
   }
 
   /**

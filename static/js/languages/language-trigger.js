@@ -6,10 +6,8 @@ import { closeDialog, showDialog } from "../core/dialogs.js";
 import { byId, h } from "../core/dom.js";
 import { moment } from "../core/format.js";
 import { currentLanguage, selectedClip, selectedRange, update } from "../core/state.js";
-import { complain } from "../core/toasts.js";
-import { showDone } from "../core/undo.js";
-import { asOptions, html, live, nothing, optionsOf, render } from "../templates.js";
-import { edit } from "./revision-edit.js";
+import { asOptions, buttonOf, html, live, nothing, optionsOf, render } from "../templates.js";
+import { editAndShow } from "./revision-edit.js";
 
 /** @import { State, TriggerDraft } from "../core/types.d.ts" */
 
@@ -107,18 +105,15 @@ function choices() {
 
 /** @param {TriggerDraft} draft */
 async function save(draft) {
-  try {
-    const { trigger_words: words } = await edit(
-      "Saving the trigger",
-      "Change of the trigger",
-      (language) => api.languages.setTrigger(language, draft),
-    );
-    closeDialog();
-    update({ take: null, start: null, end: null, recognition: null });
-    showDone("Trigger saved", `Takes ${words}`);
-  } catch (error) {
-    complain(error, "Saving the trigger");
-  }
+  const saved = await editAndShow(
+    "Saving the trigger",
+    "Change of the trigger",
+    (language) => api.languages.setTrigger(language, draft),
+    ({ trigger_words: words }) => ["Trigger saved", `Takes ${words}`],
+  );
+  if (!saved) return;
+  closeDialog();
+  update({ take: null, start: null, end: null, recognition: null });
 }
 
 /**
@@ -216,15 +211,10 @@ export function openTrigger() {
 export function drawTrigger({ gestures }) {
   const box = byId("trigger");
   box.hidden = !gestures;
-  const words = html`<span class="dim">Takes lie ${gestures?.trigger_words}. </span
-    ><button
-      type="button"
-      class="link"
-      data-writes
-      aria-label="Change what begins and ends a take"
-      @click=${openTrigger}
-    >
-      Change
-    </button>`;
+  const words = html`<span class="dim">Takes lie ${gestures?.trigger_words}. </span>${buttonOf(
+      "Change",
+      openTrigger,
+      { look: "link", writes: true, label: "Change what begins and ends a take" },
+    )}`;
   render(gestures ? words : nothing, box);
 }

@@ -3,10 +3,8 @@
 import * as api from "../core/api.js";
 import { byId } from "../core/dom.js";
 import { currentLanguage } from "../core/state.js";
-import { complain } from "../core/toasts.js";
-import { showDone } from "../core/undo.js";
 import { html, nothing, render } from "../templates.js";
-import { edit } from "./revision-edit.js";
+import { edit, editAndShow } from "./revision-edit.js";
 
 /** @import { Language, Recognition, Schemas, State } from "../core/types.d.ts" */
 
@@ -47,16 +45,13 @@ export const keepTuning = ({ profile, tuning }, words) =>
     api.languages.change(language, { profile, tuning }),
   );
 
-async function reset() {
-  try {
-    await edit("Recognising as before", "Recognition as the profile does", (language) =>
-      api.languages.change(language, UNTUNED),
-    );
-    showDone("Recognised as any language", currentLanguage().name);
-  } catch (error) {
-    complain(error, "Recognising as before");
-  }
-}
+const reset = () =>
+  editAndShow(
+    "Recognising as before",
+    "Recognition as the profile does",
+    (language) => api.languages.change(language, UNTUNED),
+    ({ name }) => ["Recognised as any language", name],
+  );
 
 /**
  * Show the tuning under the gestures, with a button that resets it.

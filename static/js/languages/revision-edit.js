@@ -3,7 +3,8 @@
 import * as api from "../core/api.js";
 import { tabStore } from "../core/browser-store.js";
 import { currentLanguage, state } from "../core/state.js";
-import { recordAction, registerUndo } from "../core/undo.js";
+import { attempt } from "../core/toasts.js";
+import { recordAction, registerUndo, showDone } from "../core/undo.js";
 import { settleConflict } from "./edit-conflict.js";
 import { reloadLanguage, reloadLanguages, showNewest } from "./language-store.js";
 
@@ -110,3 +111,20 @@ export async function edit(doing, title, change, { from = currentLanguage(), min
   recordAction({ title, kind: "edit", language: language.id, before, after: language.revision });
   return language;
 }
+
+/**
+ * Edit the language on display as `edit` does, and show what is done, or why it failed. Resolves to
+ * the new revision, or to null.
+ *
+ * @param {string} doing
+ * @param {string} title
+ * @param {(base: Language) => Promise<Language>} change
+ * @param {(made: Language) => [string, string]} done the title and the detail of the message
+ * @param {Parameters<typeof edit>[3]} [versions]
+ */
+export const editAndShow = (doing, title, change, done, versions) =>
+  attempt(doing, async () => {
+    const language = await edit(doing, title, change, versions);
+    showDone(...done(language));
+    return language;
+  });

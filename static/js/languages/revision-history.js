@@ -3,12 +3,11 @@
 import * as api from "../core/api.js";
 import { ago, dateAndTime } from "../core/format.js";
 import { currentLanguage, follow, state, update } from "../core/state.js";
-import { attempt, complain } from "../core/toasts.js";
-import { showDone } from "../core/undo.js";
+import { attempt } from "../core/toasts.js";
 import { address, here } from "../core/views.js";
-import { html, iconOf, nothing, optionsOf, render, repeat } from "../templates.js";
+import { buttonOf, html, iconOf, nothing, optionsOf, render, repeat } from "../templates.js";
 import { comparison } from "./revision-diff.js";
-import { edit } from "./revision-edit.js";
+import { editAndShow } from "./revision-edit.js";
 
 /** @import { Revision, RevisionDiff, State } from "../core/types.d.ts" */
 
@@ -35,16 +34,13 @@ const before = (number) => revisions.find((each) => each.revision < number)?.rev
 const select = (number) => update({ newer: number, older: before(number) });
 
 /** @param {Revision} revision */
-async function goBack({ revision }) {
-  try {
-    await edit("Going back", `Going back to revision ${revision}`, (language) =>
-      api.languages.revert(language, revision),
-    );
-    showDone(`Went back to revision ${revision}`, "The newer ones stay in the history.");
-  } catch (error) {
-    complain(error, "Going back");
-  }
-}
+const goBack = ({ revision }) =>
+  editAndShow(
+    "Going back",
+    `Going back to revision ${revision}`,
+    (language) => api.languages.revert(language, revision),
+    () => [`Went back to revision ${revision}`, "The newer ones stay in the history."],
+  );
 
 /** @param {Revision} row */
 function item(row) {
@@ -67,15 +63,11 @@ function item(row) {
     ${
       newest
         ? nothing
-        : html`<button
-            type="button"
-            class="quiet"
-            data-writes
-            aria-label="Go back to revision ${row.revision}"
-            @click=${() => goBack(row)}
-          >
-            Go back
-          </button>`
+        : buttonOf("Go back", () => goBack(row), {
+            look: "quiet",
+            writes: true,
+            label: `Go back to revision ${row.revision}`,
+          })
     }
   </li>`;
 }

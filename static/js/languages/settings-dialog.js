@@ -4,11 +4,10 @@ import * as api from "../core/api.js";
 import { closeDialog, showDialog } from "../core/dialogs.js";
 import { h } from "../core/dom.js";
 import { percent, plural, readable } from "../core/format.js";
-import { currentLanguage, state } from "../core/state.js";
-import { attempt, complain } from "../core/toasts.js";
-import { showDone } from "../core/undo.js";
+import { state } from "../core/state.js";
+import { attempt } from "../core/toasts.js";
 import { html, live, optionsOf, render } from "../templates.js";
-import { edit } from "./revision-edit.js";
+import { editAndShow } from "./revision-edit.js";
 
 /** @import { Language, LanguageSettings, Tuning } from "../core/types.d.ts" */
 
@@ -220,15 +219,13 @@ function fields(chosen, settings, put) {
  */
 async function save(chosen, settings) {
   const change = { profile: chosen.profile, tuning: tuningOf(chosen, settings) };
-  try {
-    await edit("Saving the settings", "Change of the settings", (language) =>
-      api.languages.change(language, change),
-    );
-    closeDialog();
-    showDone("Settings saved", currentLanguage().name);
-  } catch (error) {
-    complain(error, "Saving the settings");
-  }
+  const saved = await editAndShow(
+    "Saving the settings",
+    "Change of the settings",
+    (language) => api.languages.change(language, change),
+    ({ name }) => ["Settings saved", name],
+  );
+  if (saved) closeDialog();
 }
 
 /** Open the settings of the language on display. */

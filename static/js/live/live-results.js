@@ -3,9 +3,9 @@
 import { byId } from "../core/dom.js";
 import { askWhich, moment, percent } from "../core/format.js";
 import { endName } from "../clips/salutes.js";
-import { state } from "../core/state.js";
+import { placeIn, state } from "../core/state.js";
 import { go } from "../core/views.js";
-import { elementOf, html, nothing, render } from "../templates.js";
+import { buttonOf, elementOf, html, nothing, render } from "../templates.js";
 
 /** @import { Clip } from "../core/types.d.ts" */
 /** @import { Recognized } from "../camera/live-messages.d.ts" */
@@ -41,22 +41,11 @@ const lookOf = ({ label, pair }) => (pair ? "asked" : label === null ? "unsure" 
  */
 function entry(result, clip, clock) {
   const { title, text } = verdict(result);
-  const range = {
-    clip: clip?.id,
-    take: null,
-    start: result.start,
-    end: result.end,
-    frame: null,
-    recognition: null,
-  };
-  const open = html`<button
-    type="button"
-    class="link"
-    aria-label="Open ${title} at ${moment(result.start)} in the studio"
-    @click=${() => go("studio", range)}
-  >
-    Open
-  </button>`;
+  const place = placeIn(clip?.id, { start: result.start, end: result.end });
+  const open = buttonOf("Open", () => go("studio", place), {
+    look: "link",
+    label: `Open ${title} at ${moment(result.start)} in the studio`,
+  });
   return html`<li class=${lookOf(result)}>
     <b>${title}</b>
     <span

@@ -1,23 +1,13 @@
 // The live view: a camera, or a clip played as if live, and what is recognised in it.
 
-import { frameSender } from "../camera/frame-sender.js";
-import { openLink } from "../camera/live-socket.js";
+import { drawTrouble, startCamera } from "../camera/camera.js";
 import { mirror } from "../camera/mirror.js";
 import { drawSeen, overlay } from "../camera/pose-overlay.js";
 import { countDown, record } from "../camera/recording.js";
 import { takeEnd } from "../camera/take-end.js";
-import { drawTrouble } from "../camera/trouble.js";
-import {
-  cameraLost,
-  cameraPossible,
-  offerCameras,
-  release,
-  showCamera,
-  showClip,
-  stepFrames,
-  watchFrames,
-  whyNoCamera,
-} from "../camera/video-source.js";
+import { cameraPossible, offerCameras, release, showClip } from "../camera/video-source.js";
+import { watch } from "../camera/watching.js";
+import { select } from "../clips/clip-store.js";
 import * as api from "../core/api.js";
 import { byId, h } from "../core/dom.js";
 import { bind } from "../core/key-bindings.js";
@@ -46,10 +36,8 @@ const BETWEEN = {
 
 const LONGEST = 5 * 60 * 1000; // ms of one recording: a dozen gestures; memory is finite.
 
-/** @type {ReturnType<typeof openLink> | null} */
+/** @type {ReturnType<typeof watch> | null} */
 let link = null;
-/** @type {(() => void) | null} */
-let stopFrames = null;
 /** @type {SVGSVGElement | null} */
 let drawing = null;
 /** @type {ReturnType<typeof record> | null} */
@@ -111,12 +99,11 @@ async function drawCameraChoice() {
 }
 
 function stop() {
-  stopFrames?.();
-  link?.close();
+  link?.stop();
   counting?.abort();
   endRecording();
   release(video());
-  stopFrames = link = null;
+  link = null;
   drawing?.remove();
   drawState(null);
   drawSpeed(null, 0);
@@ -135,12 +122,6 @@ function seen(answer, seconds) {
   end.seen(answer);
 }
 
-/** @param {Trouble} trouble */
-function lost(trouble) {
-  stop();
-  problem(trouble);
-}
-
 /**
  * Stop at the end of a clip, and say how many frames were processed if nothing was recognised.
  *
@@ -151,8 +132,11 @@ function clipEnded(clip) {
   if (!recognised) showNothingRecognised(clip, rate);
 }
 
-const ended = (/** @type {string} */ reason) =>
-  lost({ title: "The live view ended", text: reason });
+/** @param {string} reason */
+function ended(reason) {
+  stop();
+  problem({ title: "The live view ended", text: reason });
+}
 
 /** @param {Listening} message */
 function listening({ language, gestures, problem: trouble }) {
@@ -164,13 +148,30 @@ function listening({ language, gestures, problem: trouble }) {
   byId("live-language").textContent = text;
 }
 
-async function showSource() {
-  if (fromClip()) await showClip(video(), api.clips.video(chosenClip()));
-  else await showCamera(video(), byId("live-cameras").value, () => lost(cameraLost(INSTEAD)));
-  mirror(byId("live-picture"), video());
-  drawing?.remove();
-  drawing = overlay(video().videoWidth, video().videoHeight);
-  video().after(drawing);
+/**
+ * Show a clip, or the chosen camera.
+ *
+ * @param {Clip | null} clip
+ * @returns {Promise<boolean>} whether there is a picture now
+ */
+async function showSource(clip) {
+  const [picture, box] = [byId("live-picture"), byId("live-problem")];
+  const options = {
+    instead: INSTEAD,
+    again: start,
+    lost: stop,
+    device: byId("live-cameras").value,
+  };
+  if (!clip) return startCamera({ video: video(), picture, box }, options);
+  try {
+    await showClip(video(), api.clips.video(clip));
+  } catch (error) {
+    release(video());
+    problem({ title: "The clip cannot be played", text: error.message });
+    return false;
+  }
+  mirror(picture, video());
+  return true;
 }
 
 /** Show the camera or the clip, and begin to look at its frames. */
@@ -181,26 +182,19 @@ async function start() {
   const clip = fromClip() ? chosenClip() : null;
   const button = byId("live-start");
   button.disabled = true;
-  try {
-    await showSource();
-  } catch (error) {
-    release(video());
-    problem(
-      clip
-        ? { title: "The clip cannot be played", text: error.message }
-        : whyNoCamera(error, INSTEAD),
-    );
+  const isShown = await showSource(clip);
+  button.disabled = false;
+  if (!isShown) {
     if (cameraPossible()) drawCameraChoice(); // The chosen camera may be gone.
     return false;
-  } finally {
-    button.disabled = false;
   }
   // The user may take long to allow the camera.
   if (state.view !== "live") {
     stop();
     return false;
   }
-  const opened = openLink({
+  drawing = overlay(video());
+  const opened = watch(video(), {
     seen,
     listening,
     ended,
@@ -221,14 +215,7 @@ async function start() {
     if (clip) clipEnded(clip);
   };
   if (clip) video().onerror = () => ended("The clip broke off: the server did not answer.");
-  const look = frameSender(video(), opened);
-  /** @param {number} time */
-  const lookAndWait = async (time) => {
-    const answered = opened.answered();
-    await look(time, performance.now() / 1000);
-    await answered;
-  };
-  stopFrames = every ? stepFrames(video(), lookAndWait) : watchFrames(video(), look);
+  opened.begin(Boolean(every));
   if (clip && !every) await video().play();
   return true;
 }
@@ -300,14 +287,7 @@ function wire() {
   byId("live-cameras").onchange = start;
   byId("live-clips").onchange = () => {
     stop();
-    update({
-      clip: byId("live-clips").value,
-      take: null,
-      start: null,
-      end: null,
-      frame: null,
-      recognition: null,
-    });
+    select(byId("live-clips").value);
   };
   byId("live-clear").onclick = () => clearResults(FIRST);
 }

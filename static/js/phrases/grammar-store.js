@@ -2,7 +2,7 @@
 
 import * as api from "../core/api.js";
 import { state } from "../core/state.js";
-import { complain } from "../core/toasts.js";
+import { attempt } from "../core/toasts.js";
 import { edit } from "../languages/revision-edit.js";
 
 /** @import { Grammar } from "../core/types.d.ts" */
@@ -43,16 +43,13 @@ let working = Promise.resolve(true);
 /** @type {(title: string, step: (grammar: Grammar) => Grammar | null) => Promise<boolean>} */
 export function save(title, step) {
   working = working.then(async () => {
-    try {
-      await edit("Changing the phrases", title, (base) =>
+    const made = await attempt("Changing the phrases", () =>
+      edit("Changing the phrases", title, (base) =>
         api.languages.change(base, { grammar: step(base.grammar ?? EMPTY) }),
-      );
-      return true;
-    } catch (error) {
-      complain(error, "Changing the phrases");
-      drawAgain();
-      return false;
-    }
+      ),
+    );
+    if (!made) drawAgain();
+    return made !== null;
   });
   return working;
 }

@@ -4,7 +4,7 @@ import { state, update } from "../core/state.js";
 import { toast } from "../core/toasts.js";
 import { showDone } from "../core/undo.js";
 import { read, written } from "../languages/robot-command.js";
-import { html, iconOf, nothing } from "../templates.js";
+import { buttonOf, html, iconOf, nothing } from "../templates.js";
 import { textField, tool } from "./form-fields.js";
 import { inPhrase, rememberName, slotsOf } from "./grammar-edits.js";
 import { save } from "./grammar-store.js";
@@ -131,14 +131,11 @@ export function phraseCard(phrase, place) {
         @click=${() => update({ phrase: open ? null : phrase.name })}
       >
         ${iconOf("chevron")}<b>${phrase.name}</b></button
-      >${sequence(phrase)}${doubts.length ? doubt(doubts.length) : nothing}<button
-        type="button"
-        id="${id}-try"
-        aria-label="Try ${phrase.name}"
-        @click=${() => showExample(phrase.name)}
-      >
-        Try</button
-      >${tool(`${id}-remove`, "trash", `Delete ${phrase.name}`, () => remove(phrase))}
+      >${sequence(phrase)}${doubts.length ? doubt(doubts.length) : nothing}${buttonOf(
+        "Try",
+        () => showExample(phrase.name),
+        { label: `Try ${phrase.name}`, id: `${id}-try` },
+      )}${tool(`${id}-remove`, "trash", `Delete ${phrase.name}`, () => remove(phrase))}
     </div>
     ${open ? form(phrase, place) : nothing}
   </li>`;

@@ -4,7 +4,7 @@ import * as api from "../core/api.js";
 import { askWhich } from "../core/format.js";
 import { follow, state, update } from "../core/state.js";
 import { attempt } from "../core/toasts.js";
-import { html, nothing, repeat } from "../templates.js";
+import { buttonOf, html, nothing, repeat } from "../templates.js";
 import { called, ROLES } from "./grammar-edits.js";
 import { grammar, saved } from "./grammar-store.js";
 
@@ -228,13 +228,9 @@ export function trialPanel() {
       <button type="button" aria-pressed=${picked !== null} @click=${pickTwo}>
         ${picked?.length ? `${picked[0]} or \u2026?` : "Between two"}
       </button>
-      <button
-        type="button"
-        ?disabled=${!event || isOver(event) || state.paused !== null}
-        @click=${() => update({ paused: "yes" })}
-      >
-        Pause too long
-      </button>
+      ${buttonOf("Pause too long", () => update({ paused: "yes" }), {
+        disabled: !event || isOver(event) || state.paused !== null,
+      })}
       <button type="button" ?disabled=${state.shown === null} @click=${() => show([])}>
         Clear
       </button>

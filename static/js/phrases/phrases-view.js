@@ -5,7 +5,7 @@ import { plural } from "../core/format.js";
 import { follow, state, update } from "../core/state.js";
 import { showDone } from "../core/undo.js";
 import { go } from "../core/views.js";
-import { html, nothing } from "../templates.js";
+import { buttonOf, html, nothing } from "../templates.js";
 import { addButton, redraw } from "./form-fields.js";
 import { free, withPhrase } from "./grammar-edits.js";
 import { followRefusals, grammar, labels, save } from "./grammar-store.js";
@@ -43,14 +43,10 @@ function findings() {
         html`<li class="finding error">
           <span class="mark" aria-hidden="true">!</span>
           <div class="finding-text"><p>${message}</p></div>
-          <button
-            type="button"
-            id="ambiguity-${index}-try"
-            aria-label="Try: ${gestures.join(", ")}"
-            @click=${() => show(gestures)}
-          >
-            Try
-          </button>
+          ${buttonOf("Try", () => show(gestures), {
+            label: `Try: ${gestures.join(", ")}`,
+            id: `ambiguity-${index}-try`,
+          })}
         </li>`,
     )}
   </ul>`;

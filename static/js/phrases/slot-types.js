@@ -1,6 +1,6 @@
 // The panel of slot types: gestures, each with the value it stands for.
 
-import { asOptions, html, nothing } from "../templates.js";
+import { asOptions, buttonOf, html, nothing } from "../templates.js";
 import { addButton, choice, textField, tool } from "./form-fields.js";
 import {
   inSlotType,
@@ -170,16 +170,12 @@ function slotType(type, place) {
     <ul class="slot-values" aria-label="Gestures of ${type.name}">
       ${type.values.map((value, index) => valueRow(type, place, value, index))}
     </ul>
-    <button
-      type="button"
-      class="link"
-      data-writes
-      id="${id}-add"
-      ?hidden=${type.values.length === labels().length}
-      @click=${() => addValue(type)}
-    >
-      Add a gesture
-    </button>
+    ${buttonOf("Add a gesture", () => addValue(type), {
+      look: "link",
+      writes: true,
+      id: `${id}-add`,
+      hidden: type.values.length === labels().length,
+    })}
   </li>`;
 }
 

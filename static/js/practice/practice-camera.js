@@ -1,22 +1,12 @@
 // The camera of practice: it records all the time, and each completed take becomes a clip.
 
-import { frameSender } from "../camera/frame-sender.js";
-import { openLink } from "../camera/live-socket.js";
+import { startCamera } from "../camera/camera.js";
 import { drawSeen, overlay } from "../camera/pose-overlay.js";
-import { mirror } from "../camera/mirror.js";
 import { record } from "../camera/recording.js";
 import { takeEnd } from "../camera/take-end.js";
 import { howTo, situation } from "../camera/take-steps.js";
-import { drawTrouble } from "../camera/trouble.js";
-import {
-  cameraLost,
-  cameraPossible,
-  offerCameras,
-  release,
-  showCamera,
-  watchFrames,
-  whyNoCamera,
-} from "../camera/video-source.js";
+import { cameraPossible, offerCameras, release } from "../camera/video-source.js";
+import { watch } from "../camera/watching.js";
 import { SALUTE } from "../clips/salute-threshold.js";
 import { saluteHand } from "../clips/salutes.js";
 import { h, WRITES } from "../core/dom.js";
@@ -64,10 +54,8 @@ export function practiceCamera({ started, nameOf, taken }) {
   /** @type {ReturnType<typeof record> | null} the one after it, which begins while nothing is shown */
   let later = null;
   let since = 0; // when the newer of both began, by the page's clock
-  /** @type {ReturnType<typeof openLink> | null} */
-  let link = null;
-  /** @type {(() => void) | null} */
-  let stopFrames = null;
+  /** @type {ReturnType<typeof watch> | null} */
+  let watching = null;
   /** @type {SVGSVGElement | null} */
   let drawing = null;
   const end = takeEnd(() => finish());
@@ -143,58 +131,46 @@ export function practiceCamera({ started, nameOf, taken }) {
    * @param {string} reason
    */
   function unwatched(reason) {
-    stopFrames?.();
-    link = stopFrames = null;
+    watching?.stop();
+    watching = null;
     drawing?.remove();
     words.textContent = `${reason} Show the gesture, then press \u201cRecognise now\u201d.`;
   }
 
   function stop() {
     end.reset();
-    stopFrames?.();
-    link?.close();
+    watching?.stop();
     recording?.stop();
     later?.stop();
     release(video);
     drawing?.remove();
-    link = stopFrames = recording = later = drawing = null;
+    watching = recording = later = drawing = null;
     draw();
   }
 
   async function start() {
     stop();
-    drawTrouble(trouble, null, start);
     toggle.disabled = true;
-    try {
-      await showCamera(video, choice.value, () => {
-        stop();
-        drawTrouble(trouble, cameraLost(INSTEAD), start);
-      });
-    } catch (error) {
-      release(video);
-      drawTrouble(trouble, whyNoCamera(error, INSTEAD), start);
-      return;
-    } finally {
-      toggle.disabled = false;
-      if (cameraPossible()) offerCameras(choice, video);
-    }
+    const options = { instead: INSTEAD, again: start, lost: stop, device: choice.value };
+    const isOn = await startCamera({ video, picture, box: trouble }, options);
+    toggle.disabled = false;
+    if (cameraPossible()) offerCameras(choice, video);
+    if (!isOn) return;
     // The user may take long to allow the camera.
     if (state.view !== "practice") {
       stop();
       return;
     }
     started();
-    mirror(picture, video);
-    drawing = overlay(video.videoWidth, video.videoHeight);
-    video.after(drawing);
+    drawing = overlay(video);
     renew();
     draw();
     picture.scrollIntoView({ block: "nearest" });
-    const opened = openLink({ seen, recognized, listening: () => {}, ended: unwatched });
-    link = opened;
-    link.listen(state.language);
+    const opened = watch(video, { seen, recognized, listening: () => {}, ended: unwatched });
+    watching = opened;
+    opened.listen(state.language);
     await opened.opened;
-    if (link === opened) stopFrames = watchFrames(video, frameSender(video, opened));
+    if (watching === opened) opened.begin();
   }
 
   toggle.onclick = () => (recording ? stop() : start());
@@ -207,7 +183,7 @@ export function practiceCamera({ started, nameOf, taken }) {
     stop,
     draw,
     /** Recognise with this language from now on. */
-    listen: () => link?.listen(state.language),
+    listen: () => watching?.listen(state.language),
     /**
      * Set whether the camera may be started.
      *

@@ -1,9 +1,9 @@
 // The records of practice: the evidence that each diver's takes give, and the takes themselves.
 
 import { askWhich, percent, plural } from "../core/format.js";
-import { state } from "../core/state.js";
+import { placeIn, state } from "../core/state.js";
 import { address, go, here } from "../core/views.js";
-import { html, iconButtonOf, nothing } from "../templates.js";
+import { html, iconButtonOf, nothing, progressBar } from "../templates.js";
 
 /** @import { PracticeRecord, PracticeTake } from "../core/types.d.ts" */
 
@@ -23,16 +23,6 @@ export function evidenceOf({ takes, errors, bound, limit: most, reached, more, c
 }
 
 /** @param {PracticeTake} take */
-const placeOf = ({ clip_id: clip, recognition_id: recognition }) => ({
-  clip,
-  recognition,
-  take: null,
-  start: null,
-  end: null,
-  frame: null,
-});
-
-/** @param {PracticeTake} take */
 function readAs({ right, pair, label }) {
   if (right) return " recognised";
   return pair ? ` asked back: ${askWhich(pair)}` : ` read as ${label ?? "nothing"}`;
@@ -45,7 +35,7 @@ function readAs({ right, pair, label }) {
 function takeRow(take, remove) {
   const { right, pair, expected, revision, added_by: by } = take;
   const clip = state.clips.find(({ id }) => id === take.clip_id);
-  const place = placeOf(take);
+  const place = placeIn(take.clip_id, { recognition: take.recognition_id });
   return html`<li class=${right ? "right" : pair ? "asked" : "wrong"}>
     <span aria-hidden="true">${right ? "\u2713" : pair ? "?" : "\u2260"}</span>
     <span
@@ -76,11 +66,7 @@ export function recordCard(record, remove) {
   return html`<section class="practice-record ${reached ? "reached" : ""}" aria-label=${diver}>
     <h3>${diver}${reached ? " \u2713" : ""}</h3>
     <p>${evidenceOf(record)}</p>
-    <progress
-      aria-label="Takes of ${diver}"
-      max=${Math.max(1, takes + more)}
-      value=${takes}
-    ></progress>
+    ${progressBar(`Takes of ${diver}`, takes, takes + more)}
     ${note(pairs, "asked back with the right gesture: neither right nor an error.")}${note(
       older,
       "with older revisions of the language do not count.",

@@ -3,6 +3,7 @@
 
 import { labelInName } from "../clips/clip-label.js";
 import { statusText } from "../clips/clip-store.js";
+import { clipsOfDemonstrations } from "../clips/demonstration-ranges.js";
 import { olderClipsButton } from "../clips/older-clips.js";
 import { takesLanguage } from "../clips/salutes.js";
 import * as api from "../core/api.js";
@@ -11,7 +12,7 @@ import { h, WRITES } from "../core/dom.js";
 import { follow, state } from "../core/state.js";
 import { limit } from "../core/text-limit.js";
 import { attempt, complain } from "../core/toasts.js";
-import { elementOf, html, nothing, render } from "../templates.js";
+import { buttonOf, elementOf, html, nothing, render } from "../templates.js";
 import { addFiles, takeFilesIn } from "../upload/upload-list.js";
 import { practiceCamera } from "./practice-camera.js";
 import { feedback } from "./practice-feedback.js";
@@ -30,11 +31,7 @@ const LONGEST_NAME = 80;
 
 /** The clips that can be chosen: their poses are found, and they are not demonstrations. */
 function shownClips() {
-  const demonstrations = new Set(
-    (state.gestures?.gestures ?? []).flatMap(({ demonstrations: all }) =>
-      all.map(({ source }) => source?.clip_id),
-    ),
-  );
+  const demonstrations = new Set(clipsOfDemonstrations(state.gestures));
   return state.clips.filter(({ id, status }) => status === "done" && !demonstrations.has(id));
 }
 
@@ -84,17 +81,12 @@ export function open(section) {
    * @param {string} text
    */
   const sourceButton = (name, text) =>
-    h(
-      "button",
-      {
-        type: "button",
-        onclick: () => {
-          source = name;
-          if (name === "clip") camera.stop();
-          draw();
-        },
-      },
-      text,
+    elementOf(
+      buttonOf(text, () => {
+        source = name;
+        if (name === "clip") camera.stop();
+        draw();
+      }),
     );
   const [byCamera, byClip] = [sourceButton("camera", "Camera"), sourceButton("clip", "Clip")];
   /** @type {Map<string, Attempt>} */

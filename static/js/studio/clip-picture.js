@@ -3,10 +3,11 @@
 import { browserStore } from "../core/browser-store.js";
 import { figure } from "./pose-picture.js";
 import { versionOf } from "../clips/clip-store.js";
-import { byId, h, svg } from "../core/dom.js";
+import { byId } from "../core/dom.js";
 import { nearestFrame } from "../clips/frame-times.js";
 import { bind } from "../core/key-bindings.js";
 import { follow, isReadable, selectedClip, selectedRange, state } from "../core/state.js";
+import { buttonOf, html, nothing, render, svg } from "../templates.js";
 import { posesOf } from "./tracks.js";
 import { movingWrists, strokeOver } from "./wrist-motion.js";
 
@@ -43,16 +44,10 @@ export function toggleCube() {
 
 /** The button in the transport bar. */
 export const cubeButton = () =>
-  h(
-    "button",
-    {
-      type: "button",
-      id: "do-cube",
-      title: "Show time as depth, or the flat picture (V)",
-      onclick: toggleCube,
-    },
-    "Space-time cube",
-  );
+  buttonOf("Space-time cube", toggleCube, {
+    id: "do-cube",
+    title: "Show time as depth, or the flat picture (V)",
+  });
 
 /**
  * Bind the choice: `changed(flat)` is called when it changes, `play()` by a click on the flat
@@ -94,15 +89,13 @@ let shown = null;
  */
 export function drawByPage(reason, retry = null) {
   own = true;
-  byId("flat").replaceChildren(
-    h("div", { className: "flat-picture" }),
-    h(
-      "p",
-      { className: "flat-note", role: retry ? "alert" : "status" },
-      reason,
-      retry ? h("button", { type: "button", onclick: retry }, "Try again") : null,
-    ),
+  const again = retry ? buttonOf("Try again", retry) : nothing;
+  render(
+    html`<div class="flat-picture"></div>
+      <p class="flat-note" role=${retry ? "alert" : "status"}>${reason}${again}</p>`,
+    byId("flat"),
   );
+  byId("flat").querySelector(".flat-picture").replaceChildren();
   shown = null;
   draw();
   drawFlat();
@@ -158,21 +151,20 @@ export async function drawStroke({ why, result }) {
   const role = result.expected === null ? chosen : "expected";
   box.hidden = !paths.length;
   box.classList.toggle("is-expected", role === "expected");
-  box.replaceChildren(
-    svg(
-      "svg",
-      {
-        viewBox: `0 0 ${poses.frame_size.join(" ")}`,
-        role: "img",
-        "aria-label": `The stroke of ${label}, over the one shown`,
-      },
-      ...["halo", "", "begin"].flatMap((kind) =>
-        paths.map((d) =>
-          svg("path", { class: kind, d: kind === "begin" ? `${d.split("L")[0]}h0` : d }),
-        ),
-      ),
-    ),
-    h("p", { className: "stroke-legend" }, h("i"), h("b", {}, label), ` ${role}`),
+  const drawn = (/** @type {string} */ kind) =>
+    paths.map(
+      (d) => svg`<path class=${kind} d=${kind === "begin" ? `${d.split("L")[0]}h0` : d} />`,
+    );
+  render(
+    html`<svg
+        viewBox="0 0 ${poses.frame_size.join(" ")}"
+        role="img"
+        aria-label="The stroke of ${label}, over the one shown"
+      >
+        ${["halo", "", "begin"].map(drawn)}
+      </svg>
+      <p class="stroke-legend"><i></i><b>${label}</b> ${role}</p>`,
+    box,
   );
 }
 

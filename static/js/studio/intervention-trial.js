@@ -8,7 +8,7 @@ import { complain, toast } from "../core/toasts.js";
 import { showDone } from "../core/undo.js";
 import { keepTuning } from "../languages/language-tuning.js";
 import { edit } from "../languages/revision-edit.js";
-import { elementOf, html } from "../templates.js";
+import { html } from "../templates.js";
 import { rangeOf, recogniseWith } from "./studio-view.js";
 
 /** @import { Intervention, Recognition, Trial, Tuning } from "../core/types.d.ts" */
@@ -140,17 +140,14 @@ export function trialBar(trial, result) {
   const read = result.pair
     ? askWhich(result.pair)
     : `${result.label ?? `nothing; nearest is ${result.nearest}`}.`;
-  return elementOf(
-    html`<div class="trial" role="status">
-      <p>
-        <b>Trial: </b>${trial.change.words}.
-        ${result.without?.length ? "Read without itself as" : "Recognised as"} ${read} Not saved
-        yet.
-      </p>
-      <span class="joined"
-        ><button type="button" class="primary" data-writes @click=${() => keep(trial)}>Keep</button
-        ><button type="button" @click=${() => discard(trial)}>Discard</button></span
-      >
-    </div>`,
-  );
+  return html`<div class="trial" role="status">
+    <p>
+      <b>Trial: </b>${trial.change.words}.
+      ${result.without?.length ? "Read without itself as" : "Recognised as"} ${read} Not saved yet.
+    </p>
+    <span class="joined"
+      ><button type="button" class="primary" data-writes @click=${() => keep(trial)}>Keep</button
+      ><button type="button" @click=${() => discard(trial)}>Discard</button></span
+    >
+  </div>`;
 }

@@ -4,7 +4,7 @@ import * as api from "../core/api.js";
 import { h, svg } from "../core/dom.js";
 import { readable } from "../core/format.js";
 import { insideFrame, showFrames } from "../clips/frame-times.js";
-import { drawPose, skeleton } from "../clips/skeleton.js";
+import { drawPose, lineThrough, skeleton } from "../clips/skeleton.js";
 
 /** @import { Clip, Poses } from "../core/types.d.ts" */
 
@@ -102,19 +102,8 @@ export function figure(onPick) {
    * @param {number} first
    * @param {number} last
    */
-  function trail(poses, index, first, last) {
-    if (index < 0) return "";
-    let down = false;
-    return poses.xy
-      .slice(first, last + 1)
-      .map((points) => {
-        const [x, y] = points[index];
-        const command = x === null ? "" : `${down ? "L" : "M"}${x} ${y}`;
-        down = x !== null;
-        return command;
-      })
-      .join("");
-  }
+  const trail = ({ xy }, index, first, last) =>
+    index < 0 ? "" : lineThrough(xy.slice(first, last + 1).map((points) => points[index]));
   return { element, show, draw };
 }
 

@@ -4,7 +4,7 @@ import { browserStore } from "../core/browser-store.js";
 import { byId, h } from "../core/dom.js";
 import { follow, selectedClip } from "../core/state.js";
 import { go } from "../core/views.js";
-import { html, nothing, render } from "../templates.js";
+import { buttonOf, html, nothing, render } from "../templates.js";
 import { showExample } from "./welcome.js";
 
 /** `onClip`: the step needs a clip; without one the example is offered. */
@@ -137,13 +137,11 @@ function show(number, focus) {
         <span class="dim">${number + 1} of ${STEPS.length}</span>
         <span class="spacer"></span>
         ${number ? back : nothing}${last ? nothing : skip}
-        <button
-          type="button"
-          class="primary"
-          @click=${() => (last ? end() : show(number + 1, true))}
-        >
-          ${last ? "Done" : number ? "Next" : "Show me"}
-        </button>
+        ${buttonOf(
+          last ? "Done" : number ? "Next" : "Show me",
+          () => (last ? end() : show(number + 1, true)),
+          { look: "primary" },
+        )}
       </div>`,
     card,
   );

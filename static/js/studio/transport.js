@@ -1,9 +1,10 @@
 // The playback controls under the timeline, and their keys.
 
-import { byId, h, icon } from "../core/dom.js";
+import { byId } from "../core/dom.js";
 import { moment } from "../core/format.js";
 import { bind } from "../core/key-bindings.js";
 import { isReadable, state, update } from "../core/state.js";
+import { buttonOf, elementOf, html, iconOf, render } from "../templates.js";
 import { loop, play, step } from "./playback.js";
 import { cubeButton, followChoice } from "./clip-picture.js";
 import { setEnd, setStart, ZOOMS } from "./timeline.js";
@@ -47,67 +48,51 @@ function neighbour(by) {
  * @param {string} name
  * @param {string} label
  * @param {string} keys
- * @param {() => unknown} onclick
+ * @param {() => unknown} run
  */
-const button = (name, label, keys, onclick) =>
-  h(
-    "button",
-    {
-      type: "button",
-      className: "quiet icon",
-      id: `do-${name}`,
-      "aria-label": label,
-      title: keys ? `${label} (${keys})` : label,
-      onclick,
-    },
-    icon(name),
-  );
-
-/**
- * @param {string} text
- * @param {string} title
- * @param {() => unknown} onclick
- */
-const edge = (text, title, onclick) => h("button", { type: "button", title, onclick }, text);
+const button = (name, label, keys, run) =>
+  html`<button
+    type="button"
+    class="quiet icon"
+    id="do-${name}"
+    aria-label=${label}
+    title=${keys ? `${label} (${keys})` : label}
+    @click=${run}
+  >
+    ${iconOf(name)}
+  </button>`;
 
 /** Build the bar, and bind its keys. */
 export function buildTransport() {
-  byId("transport").replaceChildren(
-    h(
-      "div",
-      { className: "transport-buttons" },
-      button("back", "One frame back", ",", () => step(-1)),
-      button("play", "Play", "Space", toggle),
-      button("forth", "One frame on", ".", () => step(1)),
-    ),
-    h("p", { className: "clock", id: "clock" }),
-    h("small", {
-      className: "dim num",
-      id: "picture-of",
-      title:
-        "Not every picture of a clip this long is kept. Choose a take or a shorter range to see all of them.",
-    }),
-    h("label", { className: "visually-hidden", for: "speed" }, "Speed"),
-    h(
-      "select",
-      {
-        id: "speed",
-        title: "Speed",
-        onchange: () => {
-          if (state.position?.playing) play(speed());
-        },
-      },
-      SPEEDS.map((each) => h("option", { value: each, selected: each === 1 }, `${each}\u00d7`)),
-    ),
-    button("loop", "Repeat the range", "", () => loop(!state.position?.loop)),
-    h(
-      "span",
-      { className: "joined edges" },
-      edge("Start here", "Let the range start here ([)", setStart),
-      edge("End here", "Let the range end here (])", setEnd),
-    ),
-    tracksButton(),
-    cubeButton(),
+  const changed = () => {
+    if (state.position?.playing) play(speed());
+  };
+  render(
+    html`<div class="transport-buttons">
+        ${button("back", "One frame back", ",", () => step(-1))}
+        ${button("play", "Play", "Space", toggle)}
+        ${button("forth", "One frame on", ".", () => step(1))}
+      </div>
+      <p class="clock" id="clock"></p>
+      <small
+        class="dim num"
+        id="picture-of"
+        title="Not every picture of a clip this long is kept. Choose a take or a shorter range to see all of them."
+      ></small>
+      <label class="visually-hidden" for="speed">Speed</label>
+      <select id="speed" title="Speed" @change=${changed}>
+        ${SPEEDS.map((each) => html`<option value=${each} ?selected=${each === 1}>${each}×</option>`)}
+      </select>
+      ${button("loop", "Repeat the range", "", () => loop(!state.position?.loop))}
+      <span class="joined edges"
+        >${buttonOf("Start here", setStart, { title: "Let the range start here ([)" })}${buttonOf(
+          "End here",
+          setEnd,
+          { title: "Let the range end here (])" },
+        )}</span
+      >
+      ${tracksButton()}${cubeButton()}`,
+    byId("transport"),
   );
   followChoice({ changed: showFlat, play: toggle });
   const when = () => isReadable() && state.position !== null && !byId("view-studio").hidden;
@@ -146,7 +131,7 @@ export function drawTransport({ position }) {
   const toggles = byId("do-play");
   const label = playing ? "Pause" : "Play";
   if (toggles.getAttribute("aria-label") !== label) {
-    toggles.replaceChildren(icon(playing ? "pause" : "play"));
+    toggles.replaceChildren(elementOf(iconOf(playing ? "pause" : "play")));
     toggles.setAttribute("aria-label", label);
     toggles.title = `${label} (Space)`;
   }
@@ -154,8 +139,6 @@ export function drawTransport({ position }) {
   const other = !playing && position.picture !== null && position.picture !== frame;
   byId("picture-of").textContent = other ? `picture of frame ${position.picture}` : "";
   byId("do-loop").setAttribute("aria-pressed", String(position.loop));
-  byId("clock").replaceChildren(
-    h("b", {}, moment(time)),
-    ` frame ${frame} of ${frames}${playing && Math.abs(position.speed) !== 1 ? `, ${position.speed}\u00d7` : ""}`,
-  );
+  const rate = playing && Math.abs(position.speed) !== 1 ? `, ${position.speed}\u00d7` : "";
+  render(html`<b>${moment(time)}</b> frame ${frame} of ${frames}${rate}`, byId("clock"));
 }

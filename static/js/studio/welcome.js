@@ -13,7 +13,7 @@ import { isReadable, selectedClip, state, update, whenLoaded } from "../core/sta
 import { toast } from "../core/toasts.js";
 import { go } from "../core/views.js";
 import { choose, knowsSampleClips, MISREAD } from "../languages/language-store.js";
-import { elementOf, html, iconOf, nothing } from "../templates.js";
+import { buttonOf, elementOf, html, iconOf, nothing } from "../templates.js";
 
 /** @import { Clip, Job, LanguageSummary, Sample, State } from "../core/types.d.ts" */
 
@@ -65,14 +65,10 @@ function firstTake() {
   });
   const turn = () => (film.paused ? film.play() : film.pause());
   return html`<figure class="first-take">
-    <button
-      type="button"
-      title="Play or pause"
-      aria-label="Film: a circle between two Vulcan salutes becomes a gesture. Play or pause"
-      @click=${turn}
-    >
-      ${film}
-    </button>
+    ${buttonOf(film, turn, {
+      title: "Play or pause",
+      label: "Film: a circle between two Vulcan salutes becomes a gesture. Play or pause",
+    })}
     <figcaption>
       ${iconOf("salute")}<span
         ><b>Vulcan salute: </b>palm forward, fingers parted two by two, held for half a

@@ -1,7 +1,7 @@
 // The explanation of a recognition: its cause, the differences in time, and counterfactuals.
 
 import * as api from "../core/api.js";
-import { byId, h, svg, WRITES } from "../core/dom.js";
+import { byId } from "../core/dom.js";
 import { moment, readable } from "../core/format.js";
 import { nearestFrame } from "../clips/frame-times.js";
 import { mcapExport } from "../clips/mcap-export.js";
@@ -10,6 +10,7 @@ import { attempt, toast } from "../core/toasts.js";
 import { go } from "../core/views.js";
 import { openDemonstrations } from "../gestures/demonstrations-dialog.js";
 import { addToTestSet, expectedOf } from "../languages/test-set.js";
+import { buttonOf, html, ifDefined, nothing, render, svg } from "../templates.js";
 import { alignmentsOf } from "./alignment.js";
 import { partsOf } from "./alignment-parts.js";
 import { trialBar, tryOut } from "./intervention-trial.js";
@@ -71,44 +72,37 @@ function costs({ alignments, expected, transcript }) {
  */
 function lane({ time, steps, marked }, { part, name }, most, last) {
   /** @param {number} seconds */
-  const share = (seconds) => ((1000 * seconds) / last).toFixed(1);
+  const share = (seconds) => Number(((1000 * seconds) / last).toFixed(1));
   const bars = steps.map((step, index) => {
-    const from = index ? (time[index - 1] + time[index]) / 2 : time[index];
-    const to = index + 1 < time.length ? (time[index] + time[index + 1]) / 2 : time[index];
+    const from = share(index ? (time[index - 1] + time[index]) / 2 : time[index]);
+    const to = share(index + 1 < time.length ? (time[index] + time[index + 1]) / 2 : time[index]);
     const amount = Math.sqrt(step[part] / most);
-    return svg("rect", {
-      x: share(from),
-      width: Math.max(0.5, Number(share(to)) - Number(share(from))),
-      y: LANE * (1 - amount),
-      height: LANE * amount,
-      "fill-opacity": (0.35 + 0.65 * amount).toFixed(2),
-    });
+    return svg`<rect
+      x=${from}
+      width=${Math.max(0.5, to - from)}
+      y=${LANE * (1 - amount)}
+      height=${LANE * amount}
+      fill-opacity=${(0.35 + 0.65 * amount).toFixed(2)}
+    />`;
   });
-  return h(
-    "div",
-    { className: "cost-lane" },
-    svg(
-      "svg",
-      {
-        viewBox: `0 0 1000 ${LANE}`,
-        preserveAspectRatio: "none",
-        role: "img",
-        "aria-label": `Difference of the ${readable(name)} along the clip`,
-      },
-      ...(marked
-        ? [
-            svg("rect", {
-              class: "differs",
-              x: share(marked.start),
-              width: Number(share(marked.end)) - Number(share(marked.start)),
-              height: LANE,
-            }),
-          ]
-        : []),
-      ...bars,
-    ),
-    h("span", {}, readable(name)),
-  );
+  const differs =
+    marked &&
+    svg`<rect
+      class="differs"
+      x=${share(marked.start)}
+      width=${share(marked.end) - share(marked.start)}
+      height=${LANE}
+    />`;
+  return html`<div class="cost-lane">
+    <svg
+      viewBox="0 0 1000 ${LANE}"
+      preserveAspectRatio="none"
+      role="img"
+      aria-label="Difference of the ${readable(name)} along the clip"
+    >
+      ${differs}${bars}</svg
+    ><span>${readable(name)}</span>
+  </div>`;
 }
 
 /**
@@ -119,17 +113,13 @@ function lane({ time, steps, marked }, { part, name }, most, last) {
 export function drawCosts({ why, result, timeline }) {
   const box = byId("costs");
   const found = why && !why.right && result?.expected ? costs(why) : null;
-  if (!timeline || !found?.lanes.length) return box.replaceChildren();
+  if (!timeline || !found?.lanes.length) return render(nothing, box);
   const most =
     Math.max(...found.lanes.flatMap(({ part }) => found.steps.map((step) => step[part]))) || 1;
-  return box.replaceChildren(
-    h(
-      "p",
-      { className: "cost-title" },
-      "Where it differs from ",
-      h("b", { className: "expected" }, found.label),
-    ),
-    ...found.lanes.map((each) => lane(found, each, most, timeline.time.at(-1) || 1)),
+  return render(
+    html`<p class="cost-title">Where it differs from <b class="expected">${found.label}</b></p>
+      ${found.lanes.map((each) => lane(found, each, most, timeline.time.at(-1) || 1))}`,
+    box,
   );
 }
 
@@ -148,49 +138,29 @@ function effectOf(effect) {
 }
 
 /**
- * @param {string} href
- * @param {string} title
- * @param {string} note
- */
-const shared = (href, title, note) =>
-  h(
-    "span",
-    {},
-    h("a", { href, download: "" }, title),
-    h("small", { className: "dim" }, ` ${note}`),
-  );
-
-/**
  * The exports: the take as a page for people without a studio, the whole clip for robot tools.
  *
  * @param {Recognition} result
  * @param {Explanation | null} why
  */
-const shares = (result, why) =>
-  h(
-    "p",
-    { className: "share" },
-    why
-      ? shared(
-          api.recognitions.analysisUrl(result.id),
-          "Share as one file",
-          "plays without a server",
-        )
-      : null,
-    expectedOf(result) === null || result.trial
-      ? null
-      : h(
-          "span",
-          {},
-          h(
-            "button",
-            { type: "button", className: "link", ...WRITES, onclick: () => keepAsTest(result) },
-            "Keep as a test",
-          ),
-          h("small", { className: "dim" }, " recognised again after every change"),
-        ),
-    mcapExport(result.clip_id),
-  );
+function shares(result, why) {
+  const page = html`<span
+    ><a href=${api.recognitions.analysisUrl(result.id)} download="">Share as one file</a
+    ><small class="dim"> plays without a server</small></span
+  >`;
+  const test = html`<span
+    >${buttonOf("Keep as a test", () => keepAsTest(result), { look: "link", writes: true })}<small
+      class="dim"
+    >
+      recognised again after every change</small
+    ></span
+  >`;
+  return html`<p class="share">
+    ${why && page}${expectedOf(result) === null || result.trial ? nothing : test}${mcapExport(
+      result.clip_id,
+    )}
+  </p>`;
+}
 
 /**
  * Keep the recognised range with its expected label as a test of the language.
@@ -212,24 +182,29 @@ async function keepAsTest(result) {
 }
 
 /** @param {string} text */
-const note = (text) => h("p", { className: "dim" }, text);
+const note = (text) => html`<p class="dim">${text}</p>`;
 
 /**
- * @param {string} words
- * @param {() => unknown} onclick
- */
-const link = (words, onclick) => h("button", { type: "button", className: "link", onclick }, words);
-
-/**
- * A button that goes to a moment.
+ * A button within a sentence; its text is a property, so that there are no spaces around it.
  *
- * @param {number} seconds
  * @param {string} words
+ * @param {() => unknown} run
+ * @param {string} [look]
+ * @param {string} [title]
  */
-const goTo = (seconds, words) =>
-  link(words, () => {
-    if (state.timeline) seek(nearestFrame(state.timeline.time, seconds));
-  });
+const link = (words, run, look = "", title = undefined) =>
+  html`<button
+    type="button"
+    class="link ${look}"
+    title=${ifDefined(title)}
+    .textContent=${words}
+    @click=${run}
+  ></button>`;
+
+/** @param {number} seconds */
+function goTo(seconds) {
+  if (state.timeline) seek(nearestFrame(state.timeline.time, seconds));
+}
 
 /**
  * The button beside a cause: its demonstrations, the gestures that are alike, or its moment;
@@ -242,58 +217,44 @@ function placeOf({ causes: [cause], blame: [blamed] }) {
   if (cause?.kind === "near_gesture") return link("Change one in Health", () => go("health"));
   if (label && (blamed || cause.kind === "demonstration"))
     return link("Show its demonstrations", () => openDemonstrations(label));
-  return cause && cause.start !== null ? goTo(cause.start, `Go to ${moment(cause.start)}`) : null;
+  const start = cause?.start ?? null;
+  return start === null ? nothing : link(`Go to ${moment(start)}`, () => goTo(start));
 }
-
-/**
- * The numbers behind the sentence, folded.
- *
- * @param {Explanation} why
- */
-const detailsOf = ({ details }) =>
-  h(
-    "details",
-    { className: "why-details" },
-    h("summary", {}, "Numbers"),
-    h(
-      "ul",
-      {},
-      details.map((line) => h("li", { className: "num" }, line)),
-    ),
-  );
 
 /**
  * The one thing to do: the best change as a button that tries it; nothing where none helps.
  *
  * @param {Explanation} why
  */
-const remedyOf = ({ right, expected, counterfactuals: [best] }) =>
-  right || !best
-    ? null
-    : h(
-        "p",
-        { className: "remedies" },
-        // As a demonstration the take is read without itself.
-        best.change.kind === "further_demonstration"
-          ? "Other takes are read better "
-          : `Recognised as ${expected} `,
-        h("button", { type: "button", onclick: () => tryOut(best) }, best.change.words),
-        h("small", { className: "dim num" }, ` ${effectOf(best.effect)}`),
-      );
+function remedyOf({ right, expected, counterfactuals: [best] }) {
+  if (right || !best) return nothing;
+  const isFurther = best.change.kind === "further_demonstration";
+  // As a demonstration the take is read without itself.
+  const what = isFurther ? "Other takes are read better" : `Recognised as ${expected}`;
+  return html`<p class="remedies">
+    ${what}
+    <button type="button" @click=${() => tryOut(best)}>${best.change.words}</button>
+    <small class="dim num">${effectOf(best.effect)}</small>
+  </p>`;
+}
 
 /**
  * Words of a line that tells strokes: those of the take go to their moment.
  *
  * @param {Words} words
- * @returns {HTMLElement}
+ * @returns {unknown}
  */
 function drawn({ text, start, differs, bridged, folded }) {
-  if (folded.length) return h("details", {}, h("summary", {}, text), folded.map(drawn));
-  const marked = [differs ? "differs" : "", bridged ? "bridged" : ""].filter(Boolean);
-  const told = start === null ? h("span", {}, text) : goTo(start, text);
-  told.classList.add(...marked);
-  if (bridged) told.title = "The hand jumped here: its path is bridged by a line.";
-  return told;
+  if (folded.length)
+    return html`<details>
+      <summary>${text}</summary>
+      ${folded.map(drawn)}
+    </details>`;
+  const look = `${differs ? "differs" : ""} ${bridged ? "bridged" : ""}`;
+  const title = bridged ? "The hand jumped here: its path is bridged by a line." : undefined;
+  return start === null
+    ? html`<span class=${look} title=${ifDefined(title)}>${text}</span>`
+    : link(text, () => goTo(start), look, title);
 }
 
 /**
@@ -302,40 +263,34 @@ function drawn({ text, start, differs, bridged, folded }) {
  * @param {Explanation} why
  */
 const transcriptOf = ({ causes, strokes }) =>
-  strokes.length
-    ? h(
-        "div",
-        {
-          className: causes.length ? "transcript" : "transcript why-sentence",
-          role: "group",
-          "aria-label": "Strokes in words",
-        },
-        strokes.map((line) => h("p", {}, line.map(drawn))),
-      )
-    : null;
-
-/** @param {Explanation} why */
-const notesOf = ({ notes }) =>
-  notes.length
-    ? h(
-        "ul",
-        { className: "why-notes" },
-        notes.map((text) => h("li", {}, text)),
-      )
-    : null;
+  html`<div
+    class="transcript ${causes.length ? "" : "why-sentence"}"
+    role="group"
+    aria-label="Strokes in words"
+  >
+    ${strokes.map((line) => html`<p>${line.map(drawn)}</p>`)}
+  </div>`;
 
 /** @param {Explanation} why */
 function reasons(why) {
-  const transcript = transcriptOf(why);
-  return [
-    transcript && !why.causes.length
-      ? null
-      : h("p", { className: "why-sentence" }, `${why.sentence} `, placeOf(why)),
-    transcript,
-    notesOf(why),
-    remedyOf(why),
-    detailsOf(why),
-  ];
+  const { causes, strokes, sentence, notes, details } = why;
+  return html`${
+      strokes.length && !causes.length
+        ? nothing
+        : html`<p class="why-sentence">${sentence} ${placeOf(why)}</p>`
+    }${strokes.length ? transcriptOf(why) : nothing}${
+      notes.length
+        ? html`<ul class="why-notes">
+            ${notes.map((text) => html`<li>${text}</li>`)}
+          </ul>`
+        : nothing
+    }${remedyOf(why)}
+    <details class="why-details">
+      <summary>Numbers</summary>
+      <ul>
+        ${details.map((line) => html`<li class="num">${line}</li>`)}
+      </ul>
+    </details>`;
 }
 
 /**
@@ -343,27 +298,30 @@ function reasons(why) {
  *
  * @param {string[]} labels
  */
-const askExpected = (labels) => [
-  note("Was another gesture meant? Choose it to see why, and which change would help."),
-  h(
-    "div",
-    { className: "meant", role: "group", "aria-label": "Gesture that was meant" },
-    labels.map((label) =>
-      h("button", { type: "button", onclick: () => recogniseWith({ expected: label }) }, label),
-    ),
-  ),
-];
+const askExpected = (labels) =>
+  html`${note("Was another gesture meant? Choose it to see why, and which change would help.")}
+    <div class="meant" role="group" aria-label="Gesture that was meant">
+      ${labels.map((label) => buttonOf(label, () => recogniseWith({ expected: label })))}
+    </div>`;
 
 /**
  * The question which gesture was meant, or what helps where none was.
  *
  * @param {Recognition} result
- * @returns {(Node | string | null)[]}
  */
 function whatWasMeant({ expected_none: none, label, gestures }) {
   if (!none) return askExpected(gestures);
-  return label === null ? [] : [note("The dial in Health decides how many takes are refused.")];
+  return label === null ? nothing : note("The dial in Health decides how many takes are refused.");
 }
+
+/**
+ * Whether it is asked which gesture was meant, instead of saying why.
+ *
+ * @param {Recognition} result
+ * @param {State["trial"]} trial
+ */
+const isAsked = (result, trial) =>
+  result.expected_none || (expectedOf(result) === null && trial?.result !== result.id);
 
 /**
  * Draw the explanation beside the take, and the moments that correspond under it.
@@ -371,29 +329,16 @@ function whatWasMeant({ expected_none: none, label, gestures }) {
  * @param {State} state
  */
 export function drawWhy({ why, result, trial }) {
-  const box = byId("why");
-  const trying = trial && result?.id === trial.result ? trialBar(trial, result) : null;
-  const done = isReadable();
-  byId("reasons").hidden = !done;
-  box.hidden = !done || !result; // Without a result the decision says what to do.
-  if (!done || !result) {
-    drawMoments(null);
-    return box.replaceChildren();
-  }
-  const asked = result.expected_none || (expectedOf(result) === null && !trying);
-  drawMoments(asked ? null : alignmentsOf(why));
-  const words = asked ? whatWasMeant(result) : [trying, ...(why ? reasons(why) : [])];
-  words.push(shares(result, asked ? null : why));
-  return box.replaceChildren(h("div", { className: "why-words" }, words));
-}
-
-/**
- * Draw which moments correspond, under the picture.
- *
- * @param {ReturnType<typeof alignmentsOf>} alignments
- */
-function drawMoments(alignments) {
-  const box = byId("correspondences");
-  box.hidden = !alignments;
-  box.replaceChildren(...(alignments ? [alignments] : []));
+  const [box, moments] = [byId("why"), byId("correspondences")];
+  const shown = isReadable() ? result : null; // Without a result the decision says what to do.
+  byId("reasons").hidden = !isReadable();
+  box.hidden = !shown;
+  const told = !shown || isAsked(shown, trial) ? null : why;
+  const alignments = alignmentsOf(told);
+  moments.hidden = !alignments;
+  render(alignments, moments);
+  if (!shown) return render(nothing, box);
+  const trying = trial?.result === shown.id ? trialBar(trial, shown) : nothing;
+  const words = isAsked(shown, trial) ? whatWasMeant(shown) : [trying, told && reasons(told)];
+  return render(html`<div class="why-words">${words}${shares(shown, told)}</div>`, box);
 }

@@ -1,14 +1,16 @@
 // The viser iframe: one workspace per tab, kept over reloads.
 
+import { drawTrouble } from "../camera/camera.js";
 import * as api from "../core/api.js";
 import { tabStore } from "../core/browser-store.js";
-import { byId, h } from "../core/dom.js";
+import { byId } from "../core/dom.js";
 import { listenToKeys } from "../core/key-bindings.js";
 import { state } from "../core/state.js";
-import { complain } from "../core/toasts.js";
+import { attempt, complain } from "../core/toasts.js";
 import { followClock, frameShown, rememberFrame, wasCut } from "./playback.js";
 import { drawByPage, drawByViser, isFlat } from "./clip-picture.js";
 
+/** @import { Trouble } from "../camera/live-messages.d.ts" */
 /** @import { WorkspaceView } from "../core/types.d.ts" */
 
 const KEY = "osg-studio.workspace"; // Each tab has a workspace of its own.
@@ -99,20 +101,8 @@ function watch(frame, late) {
   drawn();
 }
 
-/**
- * @param {string | null} title
- * @param {string} [text]
- */
-function explain(title, text = "") {
-  const box = byId("lab-problem");
-  box.hidden = !title;
-  if (!title) return;
-  box.replaceChildren(
-    h("b", {}, title),
-    h("p", {}, text),
-    h("button", { type: "button", onclick: restart }, "Try again"),
-  );
-}
+/** @param {Trouble | null} trouble */
+const explain = (trouble) => drawTrouble(byId("lab-problem"), trouble, restart);
 
 /**
  * Draw the picture by the page, with the reason, and a button that tries viser again.
@@ -134,7 +124,9 @@ export function openWorkspace() {
       "No space-time cube: this browser offers no WebGL 2. The flat picture is the page\u2019s.",
     );
   opened = open();
-  opened.catch(() => explain("The 3D view did not load", "The server did not open a workspace."));
+  opened.catch(() =>
+    explain({ title: "The 3D view did not load", text: "The server did not open a workspace." }),
+  );
   return opened;
 }
 
@@ -144,12 +136,8 @@ const workspaceOf = () => opened ?? openWorkspace();
 /** Load the frame again: viser reconnects by itself only while its frame has the focus. */
 export async function restart() {
   rememberFrame(state.frame);
-  try {
-    await openWorkspace();
-    if (wanted) show(wanted).then(frameShown);
-  } catch (error) {
-    complain(error, "Opening the 3D view");
-  }
+  const id = await attempt("Opening the 3D view", openWorkspace);
+  if (id && wanted) show(wanted).then(frameShown);
 }
 
 /**
@@ -158,11 +146,8 @@ export async function restart() {
  */
 export async function recover() {
   if (!opened) return;
-  try {
-    if (wasCut() || !(await remembered())) await restart();
-  } catch (error) {
-    complain(error, "Opening the 3D view");
-  }
+  const isLost = async () => wasCut() || !(await remembered());
+  if (await attempt("Opening the 3D view", isLost)) await restart();
 }
 
 /**
@@ -198,21 +183,16 @@ async function send(view, again = true) {
  *
  * @param {boolean} flat
  */
-export async function showFlat(flat) {
-  try {
-    await api.workspaces.change(await workspaceOf(), { flat, animate: !calm.matches });
-  } catch (error) {
-    complain(error, "Changing the view");
-  }
-}
+export const showFlat = (flat) =>
+  attempt("Changing the view", async () =>
+    api.workspaces.change(await workspaceOf(), { flat, animate: !calm.matches }),
+  );
 
 /** Follow the system between dark and light. */
 export function followTheme() {
-  prefersDark.addEventListener("change", async () => {
-    try {
-      await api.workspaces.change(await workspaceOf(), { dark: prefersDark.matches });
-    } catch (error) {
-      complain(error, "Changing the colours");
-    }
-  });
+  prefersDark.addEventListener("change", () =>
+    attempt("Changing the colours", async () =>
+      api.workspaces.change(await workspaceOf(), { dark: prefersDark.matches }),
+    ),
+  );
 }

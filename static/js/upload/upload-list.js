@@ -10,7 +10,7 @@ import { state, update } from "../core/state.js";
 import { mayWrite, READS_ONLY } from "../core/session.js";
 import { complain, toast } from "../core/toasts.js";
 import { importLanguage } from "../languages/language-store.js";
-import { html, iconButtonOf, iconOf, nothing, render, repeat } from "../templates.js";
+import { html, iconButtonOf, iconOf, nothing, progressBar, render, repeat } from "../templates.js";
 import { offerToJoin } from "./chapters.js";
 import { askForVideo, kindOfJson, needsVideo } from "./keypoint-files.js";
 import { upload as send } from "./tus-upload.js";
@@ -219,15 +219,7 @@ function item(upload) {
     <div class="clip-text">
       <b>${file.name}</b>
       <span class="stage-text">${stage(upload)}</span>
-      ${
-        failed
-          ? nothing
-          : html`<progress
-              max=${Math.max(1, total)}
-              value=${loaded}
-              aria-label="Upload of ${file.name}"
-            ></progress>`
-      }
+      ${failed ? nothing : progressBar(`Upload of ${file.name}`, loaded, total)}
     </div>
     <div class="clip-buttons">
       ${failed ? iconButtonOf("retry", `Retry ${file.name}`, () => retry(upload)) : nothing}${iconButtonOf(

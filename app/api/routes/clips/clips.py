@@ -12,9 +12,8 @@ from fastapi import APIRouter, Header, Request, Response
 from fastapi.responses import FileResponse
 from starlette.concurrency import run_in_threadpool
 
-from app.api.http.images import JPEG, send_picture
+from app.api.http.downloads import JPEG, keep_single_range, send_picture
 from app.api.http.problems import ProblemError, file_responses, problem_responses
-from app.api.http.ranges import keep_single_range
 from app.api.http.schemas import clips as schemas
 from app.api.http.schemas.values import SoFar, TriggerLanguage
 from app.api.ingest.fields import UploadFields

@@ -7,7 +7,7 @@ import json
 import numpy as np
 from fastapi import APIRouter, Response
 
-from app.api.http.images import JPEG, send_picture
+from app.api.http.downloads import JPEG, send_picture
 from app.api.http.problems import file_responses, problem_responses
 from app.api.http.schemas.values import SoFar, TriggerLanguage, View
 from app.api.services.clip_responses import shows_pictures

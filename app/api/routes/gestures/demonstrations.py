@@ -13,8 +13,7 @@ from fastapi import APIRouter, Path, Response
 from app.api.http.problems import problem_responses
 from app.api.http.schemas.gestures import DemonstrationDraft, DemonstrationView
 from app.api.http.schemas.languages import LanguageView
-from app.api.routes.asked_revisions import CurrentRevision
-from app.api.routes.language_edits import CurrentEdit
+from app.api.routes.asked_revisions import CurrentEdit, CurrentRevision
 from app.api.services import gesture_edits
 from app.api.services.demonstration_sources import keep_source, sources_in
 from app.api.services.language_responses import view_demonstrations

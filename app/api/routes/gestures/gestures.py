@@ -15,8 +15,7 @@ from app.api.http.problems import ProblemError, problem_responses
 from app.api.http.schemas.clips import PosesView
 from app.api.http.schemas.gestures import GestureChange, GestureDraft, GesturesDraft
 from app.api.http.schemas.languages import LanguageView
-from app.api.routes.asked_revisions import CurrentRevision
-from app.api.routes.language_edits import CurrentEdit
+from app.api.routes.asked_revisions import CurrentEdit, CurrentRevision
 from app.api.services import gesture_edits
 from app.api.services.demonstration_sources import keep_source
 from app.api.services.running_studio import computed_briefly, edited

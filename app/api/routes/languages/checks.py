@@ -16,8 +16,7 @@ from app.api.http.problems import ProblemError, problem_responses
 from app.api.jobs.job import Job, events_about, run_task
 from app.api.routes.asked_revisions import CurrentRevision
 from app.api.routes.awaited_jobs import await_job
-from app.api.services.demonstration_faults import faults_of_language
-from app.api.services.demonstration_sources import find_sources
+from app.api.services.demonstration_sources import faults_of_language
 from app.api.services.known_takes import list_known, load_known
 from app.api.services.running_studio import Studio
 from app.api.services.test_sets import list_tested
@@ -100,7 +99,7 @@ def _job(state: LanguageState, studio: Studio) -> Job[Finished | Failed]:
 def _find_faults(studio: Studio, state: LanguageState) -> list[dict[str, Any]]:
     """Return the faults of demonstrations as findings, by their clips and by the known takes."""
     language = studio.language(state)
-    known = faults_of_language(studio, language, find_sources(studio, language))
+    known = faults_of_language(studio, language)
     told = [
         (label, faults[0].describe(label))
         for label, demonstrations in known.items()

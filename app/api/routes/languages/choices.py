@@ -14,8 +14,7 @@ from app.api.http.problems import ProblemError, problem_responses
 from app.api.http.schemas import gestures as schemas
 from app.api.http.schemas.languages import LanguageView
 from app.api.http.schemas.values import Body, Identifier, Label, View
-from app.api.routes.asked_revisions import CurrentRevision
-from app.api.routes.language_edits import CurrentEdit
+from app.api.routes.asked_revisions import CurrentEdit, CurrentRevision
 from app.api.services.demonstration_sources import digests_of, keep_source
 from app.api.services.gesture_edits import demonstration_at, gesture_in, gestures_from
 from app.api.services.known_takes import load_known
@@ -253,17 +252,8 @@ class _Candidate:
 
     def view(self, found: Replacement) -> ReplacementView:
         """Return it as the API shows it."""
-        return ReplacementView(
-            sample=self.sample,
-            gesture=self.gesture.label,
-            index=self.index,
-            sign=self.sign,
-            image=data_url(mark_gesture(self.gesture)),
-            before=found.before,
-            after=found.after,
-            nearest=None if found.nearest is None else AlikeView.model_validate(found.nearest),
-            alike=[AlikeView.model_validate(pair) for pair in found.alike],
-        )
+        own = {"gesture": self.gesture.label, "image": data_url(mark_gesture(self.gesture))}
+        return ReplacementView.model_validate(vars(found) | vars(self) | own)
 
 
 def _list_samples(studio: Studio, language: Language, own: Gesture) -> Iterator[_Candidate]:

@@ -19,8 +19,7 @@ from app.api.http.schemas.languages import (
     LanguageView,
 )
 from app.api.ingest.quotas import SenderQuota
-from app.api.routes.asked_revisions import CurrentRevision
-from app.api.routes.language_edits import CurrentEdit
+from app.api.routes.asked_revisions import CurrentEdit, CurrentRevision
 from app.api.services.language_documents import draft_of, name_of_copy
 from app.api.services.language_responses import (
     announce,

@@ -12,13 +12,13 @@ from app.api.http.schemas.recognitions import RecognitionRequest
 from app.api.http.schemas.values import Body, Diver, Identifier, Label, Seconds, View
 from app.api.ingest.quotas import SenderQuota
 from app.api.services.demonstration_sources import list_sources
-from app.api.services.explanation_notes import write_notes
 from app.api.services.gesture_edits import gesture_in
 from app.api.services.running_studio import CurrentStudio, Studio, edited
 from app.api.services.stored_recognitions import (
     load_context,
     load_recognition,
     recognize_range,
+    write_notes,
 )
 from app.evaluation.error_rate_bound import CONFIDENCE, LIMIT, bound_error_rate, count_takes_needed
 from app.recognition.decision.result import Pair

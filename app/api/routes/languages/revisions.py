@@ -8,7 +8,7 @@ from app.api.http.problems import problem_responses
 from app.api.http.revisions import Revision
 from app.api.http.schemas import languages as schemas
 from app.api.http.schemas.gestures import GestureView
-from app.api.routes.language_edits import CurrentEdit
+from app.api.routes.asked_revisions import CurrentEdit
 from app.api.services.language_diff import compare_gestures, describe_changes
 from app.api.services.language_responses import view_gesture
 from app.api.services.running_studio import CurrentStudio, computed_briefly, edited

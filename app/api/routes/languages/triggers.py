@@ -11,7 +11,7 @@ from pydantic import Field
 from app.api.http.problems import ProblemError, problem_responses
 from app.api.http.schemas.languages import LanguageView
 from app.api.http.schemas.values import Body, Identifier, Seconds
-from app.api.routes.language_edits import CurrentEdit
+from app.api.routes.asked_revisions import CurrentEdit
 from app.api.services.running_studio import Studio, edited
 from app.recognition import Language
 from app.recognition.errors import TriggerError

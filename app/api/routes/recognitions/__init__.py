@@ -1,1 +1,1 @@
-"""Routers of recognitions and of the page that explains one."""
+"""Router of recognitions."""

@@ -19,7 +19,7 @@ import pytest
 from pydantic import SecretStr
 from sqlalchemy import update
 
-from app.api.http.page_files import INVITATION_FILES
+from app.api.http.page_files import InvitationFiles
 from app.api.middleware import access
 from app.api.middleware.access import MOST_GUESSES
 from app.api.services.running_studio import Studio
@@ -123,7 +123,7 @@ def test_the_link_shows_the_gestures_of_the_language_and_nothing_else(
     page = client_of(str(client.base_url))
     assert re.fullmatch(r"http://127\.0\.0\.1:\d+/invitation#[\w-]{32}", made["link"])
     assert "text/html" in page.get("/invitation").headers["content-type"]
-    for path in INVITATION_FILES:
+    for path in InvitationFiles(static_dir()).files:
         assert page.get(f"/invitation/{path}").status_code == 200, path
     for path in ("js/main.js", "index.html", "../index.html", "%2e%2e/index.html", "js"):
         assert page.get(f"/invitation/{path}").status_code in (401, 404), path
@@ -143,7 +143,7 @@ def test_the_page_of_invited_people_may_fetch_what_it_imports_and_no_more() -> N
                 str((folder / path).parent.joinpath(each).resolve().relative_to(folder.resolve()))
                 for each in imports
             ]
-    assert needed == INVITATION_FILES
+    assert needed == InvitationFiles(folder).files
 
 
 @pytest.mark.parametrize(
