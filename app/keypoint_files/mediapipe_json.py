@@ -166,11 +166,8 @@ def _about(content: Any) -> tuple[KeypointOptions, str, tuple[str, ...]]:
     return options, str(about.get("dataset_name", "")), tuple(map(str, named))
 
 
-def _points(frame: Any) -> tuple[tuple[str, ...], FloatArray]:
-    """Return the names, else the numbers, and ``(N, 3)`` x, y and visibility of a person.
-
-    No points where nobody is seen.
-    """
+def _find_points(frame: Any) -> Any:
+    """Return what a frame states of its points: by name, in a list, or as numbers."""
     given = frame
     if isinstance(frame, Mapping):
         given = next((frame[key] for key in LANDMARKS if key in frame), None)
@@ -178,6 +175,15 @@ def _points(frame: Any) -> tuple[tuple[str, ...], FloatArray]:
         given = given["keypoints"]
     if isinstance(given, Mapping) and isinstance(given.get("x"), list):  # of Ultralytics
         given = [list(each) for each in zip(*(given[axis] for axis in "xy"), strict=True)]
+    return given
+
+
+def _points(frame: Any) -> tuple[tuple[str, ...], FloatArray]:
+    """Return the names, else the numbers, and ``(N, 3)`` x, y and visibility of a person.
+
+    No points where nobody is seen.
+    """
+    given = _find_points(frame)
     if not given:
         return (), np.empty((0, 3))
     if isinstance(given, list) and isinstance(given[0], int | float):

@@ -121,18 +121,6 @@ def view_test_set(studio: Studio, state: store.LanguageState) -> schemas.TestSet
     takes = [view for _, _, view in _view_takes(studio, state)]
     counting = [take for take in takes if not take.set_aside]
     counted = [(take, take.result) for take in takes if take.testable and take.result is not None]
-    labels = dict.fromkeys(
-        take.expected
-        for take in counting
-        if take.expected is not None and (take.result is not None or not take.testable)
-    )
-    of_none = [result for take, result in counted if take.expected_none]
-    gestures = [
-        schemas.GestureRateView(
-            label=label, **_rate([each for each in counting if each.expected == label])
-        )
-        for label in labels
-    ]
     compared = [(take, result, take.before) for take, result in counted if take.before is not None]
     gains = {take.id: _worth(take, now) - _worth(take, before) for take, now, before in compared}
     return schemas.TestSetView(
@@ -140,12 +128,8 @@ def view_test_set(studio: Studio, state: store.LanguageState) -> schemas.TestSet
         revision=state.revision.revision,
         takes=takes,
         overall=schemas.RateView(**_rate(counting)),
-        gestures=sorted(gestures, key=lambda each: each.rate or 0.0),
-        none=schemas.NoneRateView(
-            refused=sum(result.right for result in of_none),
-            asked_back=sum(result.pair is not None for result in of_none),
-            answered=sum(result.label is not None for result in of_none),
-        ),
+        gestures=_rate_gestures(counting),
+        none=_rate_none([result for take, result in counted if take.expected_none]),
         better=[each for each, gain in gains.items() if gain > 0],
         worse=[each for each, gain in gains.items() if gain < 0],
         upgraded=_were_upgraded(studio, [(before, now) for _, now, before in compared]),
@@ -259,6 +243,29 @@ def _rate(takes: Sequence[schemas.LabelledTakeView]) -> dict[str, Any]:
         "low": low,
         "high": high,
     }
+
+
+def _rate_gestures(takes: Sequence[schemas.LabelledTakeView]) -> list[schemas.GestureRateView]:
+    """Return the rates of all gestures that takes show, the worst first."""
+    shown: dict[str, list[schemas.LabelledTakeView]] = {}
+    for take in takes:
+        if take.expected is not None:
+            shown.setdefault(take.expected, []).append(take)
+    rates = [
+        schemas.GestureRateView(label=label, **_rate(own))
+        for label, own in shown.items()
+        if any(take.result is not None or not take.testable for take in own)
+    ]
+    return sorted(rates, key=lambda each: each.rate or 0.0)
+
+
+def _rate_none(results: Sequence[schemas.LabelledResultView]) -> schemas.NoneRateView:
+    """Return what became of takes that show none of the gestures."""
+    return schemas.NoneRateView(
+        refused=sum(result.right for result in results),
+        asked_back=sum(result.pair is not None for result in results),
+        answered=sum(result.label is not None for result in results),
+    )
 
 
 def _list_valid(

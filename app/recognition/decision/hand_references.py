@@ -232,12 +232,7 @@ class MovingReferences:
             return cls(shapes, owners, counting)
         apart = np.array([[measure_shapes(one, other) for other in shapes] for one in shapes])
         rows = [owners == owner for owner in range(int(owners.max()) + 1)]
-        found = set()
-        for one, other in combinations(range(len(rows)), 2):
-            pair = np.ix_(rows[one], rows[other])
-            alike = min(movements[pair].min(), movements.T[pair].min()) < SAME_MOVEMENT
-            if alike and OTHER_SHAPE < apart[pair].min() < np.inf:
-                found.add((one, other))
+        found = _find_pairs(rows, movements, apart)
         agreeing = [_agree(apart, known & each & (switches != "off")) for each in rows]
         for one, other in found:
             if agreeing[one] and agreeing[other]:
@@ -358,6 +353,19 @@ def _measure_turned(seen: HandShape, shown: HandShape) -> FloatArray:
             for voter in HAND_VOTERS
         ]
     )
+
+
+def _find_pairs(
+    rows: Sequence[npt.NDArray[np.bool_]], movements: FloatArray, apart: FloatArray
+) -> set[tuple[int, int]]:
+    """Return pairs of gestures of one movement whose hands differ; `rows` of each gesture."""
+    found = set()
+    for one, other in combinations(range(len(rows)), 2):
+        pair = np.ix_(rows[one], rows[other])
+        alike = min(movements[pair].min(), movements.T[pair].min()) < SAME_MOVEMENT
+        if alike and OTHER_SHAPE < apart[pair].min() < np.inf:
+            found.add((one, other))
+    return found
 
 
 def _agree(apart: FloatArray, members: npt.NDArray[np.bool_]) -> bool:

@@ -171,25 +171,34 @@ def find_blame(
     At most one change a demonstration; empty where no demonstration is at fault.
 
     """
-    found: list[Blame] = []
-    for gesture in known.recognizer.language.gestures if known.takes else ():
-        if labels is not None and gesture.label not in labels:
+    gestures = known.recognizer.language.gestures if known.takes else ()
+    found = [
+        each
+        for gesture in gestures
+        if labels is None or gesture.label in labels
+        for each in _judge_gesture(known, gesture, least, asked=labels is not None)
+        if each.odd or each.evidence.weigh() >= least
+    ]
+    return tuple(sorted(found, key=lambda each: -each.evidence.weigh()))
+
+
+def _judge_gesture(
+    known: KnownTakes, gesture: Gesture, least: float, *, asked: bool
+) -> Iterator[Blame]:
+    """Yield the blame of a gesture's demonstrations; `asked`: also where its takes are read."""
+    own = [index for index, take in enumerate(known.takes) if take.label == gesture.label]
+    failing = sum(known.readings[index] != gesture.label for index in own)
+    fails = failing >= max(FEWEST_FAILING, LEAST_FAILING * len(own))
+    for number, shown in enumerate(gesture.single_demonstrations()):
+        if shown.trajectory is None or shown.is_held:
             continue
-        own = [index for index, take in enumerate(known.takes) if take.label == gesture.label]
-        failing = sum(known.readings[index] != gesture.label for index in own)
-        fails = failing >= max(FEWEST_FAILING, LEAST_FAILING * len(own))
-        for number, shown in enumerate(gesture.single_demonstrations()):
-            if shown.trajectory is None or shown.is_held:
-                continue
-            # Several demonstrations show several ways; takes that are read need none of these.
-            alone = not gesture.further and (failing or labels is not None)
-            odd = _describe_odd(shown, [known.takes[index] for index in own]) if alone else ""
-            if odd or (fails and len(own) >= FEWEST_TAKES):
-                limit = -math.inf if odd else least
-                judged = _judge_demonstration(known, gesture, number, own, failing, limit)
-                found += [replace(each, odd=odd) for each in judged]
-    sure = [each for each in found if each.odd or each.evidence.weigh() >= least]
-    return tuple(sorted(sure, key=lambda each: -each.evidence.weigh()))
+        # Several demonstrations show several ways; takes that are read need none of these.
+        alone = not gesture.further and (failing or asked)
+        odd = _describe_odd(shown, [known.takes[index] for index in own]) if alone else ""
+        if odd or (fails and len(own) >= FEWEST_TAKES):
+            limit = -math.inf if odd else least
+            judged = _judge_demonstration(known, gesture, number, own, failing, limit)
+            yield from (replace(each, odd=odd) for each in judged)
 
 
 def _describe_odd(shown: Gesture, takes: Sequence[KnownTake]) -> str:

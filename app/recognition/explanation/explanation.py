@@ -260,16 +260,7 @@ class Explanation(BaseModel):
     def _list_details(self) -> Iterator[str]:
         if self.fault is not None:
             yield f"The keypoints are too poor to judge: {self.fault}."
-        if self.disagreed:
-            yield f"The two ways of comparing disagree: by directions it is {self.between[1]!r}."
-        if math.isfinite(self.score) and self.other is not None:
-            yield (
-                f"{self.expected!r} is at distance {self.score:.2f}, "
-                f"{self.other!r} at {self.other_score:.2f}."
-            )
-        if not self.right and math.isfinite(self.novelty):
-            far = f"{self.novelty:.2f} times as far as the limit allows"
-            yield f"The take is {far if self.novelty > 1 else 'within the limit'}."
+        yield from self._list_distances()
         if self.causes and self.causes[0].share < 1:
             share = f"{self.causes[0].share:.0%}"
             yield f"Undoing the cause removes {share} of the distance beyond that of usual takes."
@@ -289,6 +280,18 @@ class Explanation(BaseModel):
             side = "left" if self.facing > 0 else "right"
             yield f"The diver is turned {abs(self.facing):.0f} degrees to their {side}."
         yield f"Confidence in {self.nearest!r}: {self.confidence:.0%}."
+
+    def _list_distances(self) -> Iterator[str]:
+        if self.disagreed:
+            yield f"The two ways of comparing disagree: by directions it is {self.between[1]!r}."
+        if math.isfinite(self.score) and self.other is not None:
+            yield (
+                f"{self.expected!r} is at distance {self.score:.2f}, "
+                f"{self.other!r} at {self.other_score:.2f}."
+            )
+        if not self.right and math.isfinite(self.novelty):
+            far = f"{self.novelty:.2f} times as far as the limit allows"
+            yield f"The take is {far if self.novelty > 1 else 'within the limit'}."
 
     def to_dict(self) -> dict[str, Any]:
         """Return plain JSON types; infinite values become None."""

@@ -368,10 +368,23 @@ class HandTracker:
         people whose body is not seen, or where the pose is wrong) compete with those at the arms by
         score; such an arm's wrist goes to its hand.
         """
-        free, paces, time = self._free, self._arms, self._time
+        free, paces = self._free, self._arms
         carried = [one.carry() if one.carried else one for one in followed]
         arms, elsewhere = _sort_by_arm(carried, free)
-        for place, ((body, side), pace) in enumerate(zip(free, paces, strict=True)):
+        self._search_arms(image, arms)
+        elsewhere = [one for one in elsewhere if not _known(one, arms.values())]
+        at_arms = [replace(one, arm=paces[place], carried=False) for place, one in arms.items()]
+        alone = [replace(one, arm=None, carried=False) for one in elsewhere]
+        far = _find_far_arms(elsewhere, free, arms, paces)
+        for place, pace in enumerate(paces):
+            found = arms.get(place) or far.get(place)
+            pace.steer(found.hand if found else None, self._paces.seconds, parted=place in far)
+        return self._most_believed((*at_arms, *alone))
+
+    def _search_arms(self, image: Image | None, arms: dict[int, SeenHand]) -> None:
+        """Search the arms that are due, and add what is found to the hands by their arm."""
+        time = self._time
+        for place, ((body, side), pace) in enumerate(zip(self._free, self._arms, strict=True)):
             one = arms.get(place)
             if one is not None and one.shows_fingers:
                 pace.read = pace.read if one.carried else time
@@ -390,14 +403,6 @@ class HandTracker:
                     pace.misses = 0
                 else:
                     pace.misses += 1
-        elsewhere = [one for one in elsewhere if not _known(one, arms.values())]
-        at_arms = [replace(one, arm=paces[place], carried=False) for place, one in arms.items()]
-        alone = [replace(one, arm=None, carried=False) for one in elsewhere]
-        far = _find_far_arms(elsewhere, free, arms, paces)
-        for place, pace in enumerate(paces):
-            one = arms.get(place) or far.get(place)
-            pace.steer(one.hand if one else None, self._paces.seconds, parted=place in far)
-        return self._most_believed((*at_arms, *alone))
 
     def _most_believed(self, seen: Iterable[SeenHand]) -> tuple[SeenHand, ...]:
         return tuple(_by_belief(seen)[: self._most])
