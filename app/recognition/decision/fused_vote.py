@@ -12,10 +12,10 @@ import numpy.typing as npt
 
 from app.recognition.decision.fusion import (
     OPINION_EXPONENT,
+    add_second_opinion,
     find_tempo_dependent,
     find_unambiguous_traversals,
     fuse,
-    hear,
     list_views,
     weigh_distances,
     weigh_voters,
@@ -56,7 +56,7 @@ from app.recognition.preprocessing.holds import find_least_movement, measure_mov
 from app.recognition.voters.motion_voters import Path, SecondOpinion, Tempo, Velocity
 from app.recognition.voters.registry import HAND_VOTER_NAMES, MOTION_VOTERS, VOTER_NAMES
 
-_TEMPO, _SECOND = (VOTER_NAMES.index(voter.name) for voter in (Tempo, SecondOpinion))
+_TEMPO, _OPINION = (VOTER_NAMES.index(voter.name) for voter in (Tempo, SecondOpinion))
 _ALL_NAMES = (*VOTER_NAMES, *HAND_VOTER_NAMES)
 
 
@@ -139,8 +139,8 @@ class FusedVote:
             if each.trajectory is not None and not each.is_held and len(self._held)
         )
         # Weight factors must not change which directions and tempos the language needs.
-        self._weights, self._between = _weigh_voters(every)
-        scores = fuse(every.own_distances, self._weights, self._between) * every.own_corrections
+        weights, self._between = _weigh_voters(every)
+        scores = fuse(every.own_distances, weights, self._between) * every.own_corrections
         # Among more gestures nothing is found automatically.
         compared = scores if len(every.as_shown) <= MAX_GESTURES_TRAVERSED else scores[:0]
         self._tempo = find_tempo_dependent(every, compared)
@@ -152,13 +152,13 @@ class FusedVote:
         alike = max(1.0, Velocity.between / self.between[Velocity.name])
         self.limit = choose_limit(self.others, refused, arms=every.sees_arms, alike=alike)
         factors = tuning.weights_of(VOTER_NAMES)
-        weighed: FloatArray = self._weights * factors
+        self._weights: FloatArray = weights * factors
         # Voters that have no weight in this language decide where the author leaves no others.
-        weighed = weighed if weighed.any() or not tuning.weights else factors
+        if tuning.weights and not self._weights.any():
+            self._weights = factors
         known = np.isfinite(self.references.described[SecondOpinion.name]).all()
-        heard = factors[_SECOND] * self._weights.sum() / max(weighed.sum(), 1e-9)
-        self._heard = float(heard) if known and not self._moving.any_counts else 0.0
-        self._weights = weighed
+        opinion = factors[_OPINION] * weights.sum() / max(self._weights.sum(), 1e-9)
+        self._opinion = float(opinion) if known and not self._moving.any_counts else 0.0
 
     def sensitivity(self, gesture: int) -> Sensitivity | None:
         """Return which properties of a gesture count; None for a gesture without movement."""
@@ -199,7 +199,7 @@ class FusedVote:
     def weights(self) -> Mapping[str, float]:
         """Each voter's weight in the decision, summing to 1."""
         weights = self._weights.copy()
-        weights[_SECOND] += OPINION_EXPONENT * self._heard * weights.sum()
+        weights[_OPINION] += OPINION_EXPONENT * self._opinion * weights.sum()
         if self._tempo.any():
             weights[_TEMPO] += Tempo.weight_where_needed
         names = VOTER_NAMES
@@ -245,7 +245,9 @@ class FusedVote:
             self._tabulate(self._compare_in(view, trajectory, comparable), view, trajectory.facing)
             for view in list_views(self.references, trajectory.facing)
         ]
-        return hear(min(tables, key=lambda table: float(table.scores.min())), self._heard)
+        return add_second_opinion(
+            min(tables, key=lambda table: float(table.scores.min())), self._opinion
+        )
 
     def _compare_hands(self, trajectory: Trajectory) -> ScoreTable:
         """Compare a held hand shape with those of the language."""
@@ -276,7 +278,7 @@ class FusedVote:
         correction, penalties = references.correct(query[SHARES], rows), references.penalties[rows]
         shares = correction * weighed
         scores = shares.sum(axis=0)
-        distances[_SECOND] *= correction * penalties / self._between[_SECOND]
+        distances[_OPINION] *= correction * penalties / self._between[_OPINION]
         turned = np.where(penalties > 1, (penalties - 1) * scores, 0.0)
         slower = self._tempo[shown] & np.isfinite(distances[_TEMPO])
         shares[_TEMPO, slower] += Tempo.weight_where_needed * distances[_TEMPO, slower]
@@ -361,7 +363,7 @@ class FusedVote:
         winner = int(scores.argmin())
         able = np.flatnonzero(np.isfinite(distances).any(axis=1)).tolist()
         nearest_by_voter = distances.argmin(axis=1)
-        opinion = int(nearest_by_voter[_SECOND]) if _SECOND in able else None
+        opinion = int(nearest_by_voter[_OPINION]) if _OPINION in able else None
         found = find_answer(scores, novelty, opinion)
         answer = [self._labels[index] for index in found]
         confidence = estimate_confidence(

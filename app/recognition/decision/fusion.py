@@ -121,7 +121,7 @@ AGREED: Final = 1.15
 """
 
 
-def hear(table: ScoreTable, factor: float) -> ScoreTable:
+def add_second_opinion(table: ScoreTable, factor: float) -> ScoreTable:
     """Let the second opinion add its part to the scores, and release a clear take that it names.
 
     A score is multiplied by the ratio of the second opinion's distance to its smallest one, to the

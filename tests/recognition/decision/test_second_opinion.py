@@ -6,7 +6,12 @@ import numpy as np
 import pytest
 
 from app.recognition import Gesture, Language, PoseSequence, Recognizer
-from app.recognition.decision.fusion import AGREED, OPINION_EXPONENT, ORDER_RATIO, hear
+from app.recognition.decision.fusion import (
+    AGREED,
+    OPINION_EXPONENT,
+    ORDER_RATIO,
+    add_second_opinion,
+)
 from app.recognition.decision.result import ScoreTable
 from app.recognition.gestures.profile import Tuning
 from tests.recognition.strategies import SHAPES, circle, recording, square, wedge
@@ -72,25 +77,25 @@ def test_it_abstains_where_there_is_no_other_gesture() -> None:
 
 def test_it_adds_its_ratio_to_the_scores_and_releases_a_clear_take_that_it_names() -> None:
     before = table([0.5, 1.0, 2.0, 3.0], [0.3, 0.98, 0.98, 0.62])
-    heard = hear(before, 1.0)
+    heard = add_second_opinion(before, 1.0)
     far = (1.0 / 0.32) ** OPINION_EXPONENT
     np.testing.assert_allclose(heard.scores, [0.5, far, 2 * far, 3 * 2**OPINION_EXPONENT])
     np.testing.assert_allclose(heard.novelty, [0.5 / AGREED, 0.5, 0.5, 0.5])
     np.testing.assert_allclose(heard.scores - before.scores, heard.contributions[5])
     outside = np.array([[(1 + AGREED) / 2] * 4, [np.nan] * 4])
-    clear = hear(replace(before, novelty_by_view=outside), 1.0)
+    clear = add_second_opinion(replace(before, novelty_by_view=outside), 1.0)
     assert taught().decide(clear).label == "circle"
     close = table([0.5, 0.6, 2.0, 3.0], [0.3, 0.35, 0.98, 0.62])
-    refused = hear(replace(close, novelty_by_view=outside), 1.0)
+    refused = add_second_opinion(replace(close, novelty_by_view=outside), 1.0)
     assert taught().decide(refused).outcome == "rejected"
     np.testing.assert_array_equal(refused.novelty, outside[0])
 
 
 def test_it_chooses_among_gestures_that_are_about_as_near_and_no_other() -> None:
     within = (1 + ORDER_RATIO) / 2
-    chosen = hear(table([1.0, within, 2.0, 2.0], [0.9, 0.1, 0.9, 0.9]), 1.0)
+    chosen = add_second_opinion(table([1.0, within, 2.0, 2.0], [0.9, 0.1, 0.9, 0.9]), 1.0)
     assert chosen.scores.argmin() == 1
-    kept = hear(table([1.0, 1.01 * ORDER_RATIO, 2.0, 2.0], [0.9, 0.1, 0.9, 0.9]), 1.0)
+    kept = add_second_opinion(table([1.0, 1.01 * ORDER_RATIO, 2.0, 2.0], [0.9, 0.1, 0.9, 0.9]), 1.0)
     assert kept.scores.argmin() == 0
     # The other is then about as near, so that the diver is asked.
     assert kept.scores[1] == pytest.approx(ORDER_RATIO * kept.scores[0])
@@ -99,18 +104,22 @@ def test_it_chooses_among_gestures_that_are_about_as_near_and_no_other() -> None
 def test_a_pair_of_which_it_names_the_other_is_told() -> None:
     recognizer = taught()
     asked = recognizer.decide(
-        hear(table([1.0, 1.01 * ORDER_RATIO, 2.0, 2.0], [0.9, 0.1, 0.9, 0.9]), 1.0)
+        add_second_opinion(table([1.0, 1.01 * ORDER_RATIO, 2.0, 2.0], [0.9, 0.1, 0.9, 0.9]), 1.0)
     )
     assert (asked.pair, asked.votes[ROW], asked.disagreed) == (("circle", "line"), "line", True)
-    agreed = recognizer.decide(hear(table([1.0, 1.01, 2.0, 2.0], [0.3, 0.31, 0.9, 0.9]), 1.0))
+    agreed = recognizer.decide(
+        add_second_opinion(table([1.0, 1.01, 2.0, 2.0], [0.3, 0.31, 0.9, 0.9]), 1.0)
+    )
     assert (agreed.pair, agreed.disagreed) == (("circle", "line"), False)
 
 
 def test_a_weight_factor_makes_it_louder_or_silent() -> None:
     before = table([0.5, 1.0, 2.0, 3.0], [0.3, 0.9, 0.9, 0.6])
-    once, twice = (hear(before, factor).scores / before.scores for factor in (1.0, 2.0))
+    once, twice = (
+        add_second_opinion(before, factor).scores / before.scores for factor in (1.0, 2.0)
+    )
     np.testing.assert_allclose(twice, once**2)
-    silent = hear(before, 0.0)
+    silent = add_second_opinion(before, 0.0)
     assert np.isinf(silent.distances[silent.voters.index(ROW)]).all()
     np.testing.assert_array_equal(silent.scores, before.scores)
     assert [taught(factor).vote.weights[ROW] for factor in (0.0, 1.0)] == pytest.approx(
