@@ -60,8 +60,11 @@ def fill(database: Database, first: int, last: int) -> None:
             session.execute(
                 insert(Clip),
                 [
-                    {**clip, "id": f"{n:032x}", "owner": f"{n % CLIENTS}", "name": f"dive {n}.mp4"}
-                    | {"created": moment["created"] + n * timedelta(microseconds=1)}
+                    {**clip, "id": f"{n:032x}", "job_id": f"{n:032x}", "owner": f"{n % CLIENTS}"}
+                    | {
+                        "name": f"dive {n}.mp4",
+                        "created": moment["created"] + n * timedelta(microseconds=1),
+                    }
                     for n in numbers
                 ],
             )

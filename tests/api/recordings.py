@@ -47,6 +47,11 @@ def square(share: FloatArray) -> FloatArray:
     return np.asarray(round_one / np.abs(round_one).max(axis=1, keepdims=True))
 
 
+def narrow(share: FloatArray) -> FloatArray:
+    """Return ``(T, 2)`` points of that square, three tenths as wide."""
+    return square(share) * np.array([0.3, 1.0])
+
+
 def rounded(share: FloatArray) -> FloatArray:
     """Return ``(T, 2)`` points of a shape that lies between circle and square."""
     return 0.46 * circle(share) + 0.54 * square(share)
@@ -70,6 +75,7 @@ SHAPES = {
     "corner": corner,
     "dip": dip,
     "square": square,
+    "narrow square": narrow,
     "rounded square": rounded,
     "valley": valley,
 }

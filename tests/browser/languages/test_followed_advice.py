@@ -25,11 +25,11 @@ TAKES = {
     "square 2": ("square", "square"),
     "square 3": ("square", "rounded square"),
     "line demo": ("line", "line"),
-    "square demo": ("square", "corner"),
+    "square demo": ("square", "narrow square"),
     "other 1": (NONE, "valley"),
     "other 2": (NONE, "dip"),
 }
-"""Label and shape of every labelled take; the demonstration of square was shown unfinished."""
+"""Label and shape of every labelled take; the demonstration of square was too narrow."""
 
 Shown = Mapping[str, Sequence[str]]
 """Clips of the demonstrations of each gesture."""

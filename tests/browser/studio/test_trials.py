@@ -129,7 +129,7 @@ def test_a_trial_leaves_the_language_alone_when_it_is_left(
 def test_the_take_as_another_demonstration_is_read_without_itself(
     open_page: OpenPage, server: Running, library: Library
 ) -> None:
-    library.add_gesture("square", add_clip(server, "corner", name="unfinished.mp4"))
+    library.add_gesture("square", add_clip(server, "narrow square", name="narrow.mp4"))
     clip, other = (add_clip(server, "square", name=f"square {number}.mp4") for number in (1, 2))
     test_set = f"/api/v1/languages/{library.language}/test-set"
     takes = [{"clip_id": other, "expected": "square"}]
