@@ -18,7 +18,7 @@ import numpy as np
 
 from app.recognition import Language, PoseError, Recognizer
 from app.recognition.decision import fused_vote, fusion, outcome
-from app.recognition.decision.fusion import hear
+from app.recognition.decision.fusion import add_second_opinion
 from app.recognition.decision.outcome import find_answer
 from app.recognition.decision.result import ScoreTable
 from app.recognition.voters.motion_voters import SecondOpinion
@@ -65,7 +65,7 @@ class Compared:
 
     def decide(self) -> tuple[str, str, bool]:
         """Return the outcome, what the second opinion says, and whether the nearest is right."""
-        table = hear(self.table, 1.0)
+        table = add_second_opinion(self.table, 1.0)
         opinion = table.distances[table.voters.index(SecondOpinion.name)]
         named = int(opinion.argmin()) if np.isfinite(opinion).any() else None
         found = find_answer(table.scores, table.novelty, named)
@@ -99,7 +99,10 @@ def compare(recorded: RecordedSet, chosen: Iterable[Draw]) -> Iterator[Compared]
         ]
         recognizer = Recognizer(Language(recorded.name, gestures), "full")
         for index in draw.others if len(draw.others) else draw.own:
-            with suppress(PoseError), patch.object(fused_vote, "hear", lambda table, _: table):
+            with (
+                suppress(PoseError),
+                patch.object(fused_vote, "add_second_opinion", lambda table, _: table),
+            ):
                 table = recognizer.compare(recognizer.query(recorded.recordings[index]))
                 if np.isfinite(table.scores).any():
                     labels = recognizer.language.labels

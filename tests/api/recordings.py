@@ -49,7 +49,7 @@ def square(share: FloatArray) -> FloatArray:
 
 def narrow(share: FloatArray) -> FloatArray:
     """Return ``(T, 2)`` points of that square, three tenths as wide."""
-    return square(share) * np.array([0.3, 1.0])
+    return np.asarray(square(share) * (0.3, 1.0))
 
 
 def rounded(share: FloatArray) -> FloatArray:
