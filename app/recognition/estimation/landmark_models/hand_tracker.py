@@ -326,7 +326,8 @@ class HandTracker:
             seen = self._on_arms(image, followed)
         else:
             alone = [replace(one, arm=None, carried=False) for one in followed]
-            seen, self._until_palms = self._most_believed(alone), 0
+            seen = tuple(_by_belief(alone)[: self._most])
+            self._until_palms = 0
         self._tracked = tuple(one for one in seen if one.following.usable)
         bodies = [
             _move_wrists(body, self._arms[2 * place : 2 * place + 2])
@@ -369,8 +370,7 @@ class HandTracker:
         score; such an arm's wrist goes to its hand.
         """
         free, paces = self._free, self._arms
-        carried = [one.carry() if one.carried else one for one in followed]
-        arms, elsewhere = _sort_by_arm(carried, free)
+        arms, elsewhere = _sort_by_arm((e.carry() if e.carried else e for e in followed), free)
         self._search_arms(image, arms)
         elsewhere = [one for one in elsewhere if not _known(one, arms.values())]
         at_arms = [replace(one, arm=paces[place], carried=False) for place, one in arms.items()]
@@ -379,7 +379,7 @@ class HandTracker:
         for place, pace in enumerate(paces):
             found = arms.get(place) or far.get(place)
             pace.steer(found.hand if found else None, self._paces.seconds, parted=place in far)
-        return self._most_believed((*at_arms, *alone))
+        return tuple(_by_belief((*at_arms, *alone))[: self._most])
 
     def _search_arms(self, image: Image | None, arms: dict[int, SeenHand]) -> None:
         """Search the arms that are due, and add what is found to the hands by their arm."""
@@ -403,9 +403,6 @@ class HandTracker:
                     pace.misses = 0
                 else:
                     pace.misses += 1
-
-    def _most_believed(self, seen: Iterable[SeenHand]) -> tuple[SeenHand, ...]:
-        return tuple(_by_belief(seen)[: self._most])
 
     def _search_arm(
         self, image: Image, body: Body, side: Side, with_forearm: bool, with_glove: bool
