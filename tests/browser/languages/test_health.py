@@ -224,6 +224,8 @@ def test_labelled_clips_are_tested_corrected_and_opened(
     clip = add_clip(server, "circle", "line", name="circle-9.mp4")
     pending = [{"clip": clip, "language": library.language, "expected": None}]
     page = open_page(health_of(library), scene=False)
+    # The page has read what was pending before, and does not write over this.
+    expect(page.get_by_role("table", name="What is known of each gesture")).to_be_visible()
     page.evaluate(
         "pending => sessionStorage.setItem('osg-studio.batch', JSON.stringify(pending))", pending
     )
