@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Final
 
 import numpy as np
@@ -298,6 +298,18 @@ def wrist_distance(hand: Hand, body: Body, side: Side) -> float:
     """Return the distance between the hand's wrist and the arm's, in sizes of the hand's palm."""
     wrist = body.xy[POSE_LANDMARKS.index(f"{side}_wrist")]
     return float(np.linalg.norm(hand.xy[0] - wrist)) / max(palm_size(hand.xy), 1e-9)
+
+
+def move_wrists(body: Body, paces: Sequence[ArmPace]) -> Body:
+    """Return a body with its wrists where its hands are; see `ArmPace.steer`."""
+    if not any(pace.lead for pace in paces):
+        return body
+    xy, visibility = body.xy.copy(), body.visibility.copy()
+    for pace in paces:
+        row = POSE_LANDMARKS.index(f"{pace.side}_wrist")
+        xy[row] = pace.steered
+        visibility[row] = max(visibility[row], (pace.lead or 0.0) * pace.belief)
+    return replace(body, xy=xy, visibility=visibility)
 
 
 def find_far_arm(hand: Hand, arms: Sequence[Arm]) -> int | None:

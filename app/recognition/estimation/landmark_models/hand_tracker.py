@@ -18,6 +18,7 @@ from app.recognition.estimation.landmark_models.arms import (
     ArmPaces,
     find_far_arm,
     is_doubtful,
+    move_wrists,
     region_of_wrist,
     regions_of_forearm,
     wrist_distance,
@@ -34,7 +35,6 @@ from app.recognition.estimation.landmark_models.hand_model import (
 )
 from app.recognition.estimation.landmark_models.region import Region, region_of_palm
 from app.recognition.poses.frame import SIDES, Body, FrameLandmarks, Image, Side
-from app.recognition.poses.landmarks import POSE_LANDMARKS
 
 MOST_HANDS: Final = 2
 """Most hands of one person; each costs a run per frame."""
@@ -326,11 +326,10 @@ class HandTracker:
             seen = self._on_arms(image, followed)
         else:
             alone = [replace(one, arm=None, carried=False) for one in followed]
-            seen = tuple(_by_belief(alone)[: self._most])
-            self._until_palms = 0
+            seen, self._until_palms = self._most_believed(alone), 0
         self._tracked = tuple(one for one in seen if one.following.usable)
         bodies = [
-            _move_wrists(body, self._arms[2 * place : 2 * place + 2])
+            move_wrists(body, self._arms[2 * place : 2 * place + 2])
             for place, body in enumerate(self._bodies)
         ]
         hands = sorted(seen, key=lambda one: -one.hand.size)
@@ -370,7 +369,8 @@ class HandTracker:
         score; such an arm's wrist goes to its hand.
         """
         free, paces = self._free, self._arms
-        arms, elsewhere = _sort_by_arm((e.carry() if e.carried else e for e in followed), free)
+        carried = [one.carry() if one.carried else one for one in followed]
+        arms, elsewhere = _sort_by_arm(carried, free)
         self._search_arms(image, arms)
         elsewhere = [one for one in elsewhere if not _known(one, arms.values())]
         at_arms = [replace(one, arm=paces[place], carried=False) for place, one in arms.items()]
@@ -379,7 +379,10 @@ class HandTracker:
         for place, pace in enumerate(paces):
             found = arms.get(place) or far.get(place)
             pace.steer(found.hand if found else None, self._paces.seconds, parted=place in far)
-        return tuple(_by_belief((*at_arms, *alone))[: self._most])
+        return self._most_believed((*at_arms, *alone))
+
+    def _most_believed(self, seen: Iterable[SeenHand]) -> tuple[SeenHand, ...]:
+        return tuple(_by_belief(seen)[: self._most])
 
     def _search_arms(self, image: Image | None, arms: dict[int, SeenHand]) -> None:
         """Search the arms that are due, and add what is found to the hands by their arm."""
@@ -469,18 +472,6 @@ def _find_far_arms(
         if found is not None:
             far[among[found]] = one
     return far
-
-
-def _move_wrists(body: Body, paces: Sequence[ArmPace]) -> Body:
-    """Return a body with its wrists where its hands are; see `ArmPace.steer`."""
-    if not any(pace.lead for pace in paces):
-        return body
-    xy, visibility = body.xy.copy(), body.visibility.copy()
-    for pace in paces:
-        row = POSE_LANDMARKS.index(f"{pace.side}_wrist")
-        xy[row] = pace.steered
-        visibility[row] = max(visibility[row], (pace.lead or 0.0) * pace.belief)
-    return replace(body, xy=xy, visibility=visibility)
 
 
 def _by_belief(seen: Iterable[SeenHand]) -> list[SeenHand]:
