@@ -252,8 +252,17 @@ class _Candidate:
 
     def view(self, found: Replacement) -> ReplacementView:
         """Return it as the API shows it."""
-        own = {"gesture": self.gesture.label, "image": data_url(mark_gesture(self.gesture))}
-        return ReplacementView.model_validate(vars(found) | vars(self) | own)
+        return ReplacementView(
+            sample=self.sample,
+            gesture=self.gesture.label,
+            index=self.index,
+            sign=self.sign,
+            image=data_url(mark_gesture(self.gesture)),
+            before=found.before,
+            after=found.after,
+            nearest=None if found.nearest is None else AlikeView.model_validate(found.nearest),
+            alike=[AlikeView.model_validate(pair) for pair in found.alike],
+        )
 
 
 def _list_samples(studio: Studio, language: Language, own: Gesture) -> Iterator[_Candidate]:
