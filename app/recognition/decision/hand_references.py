@@ -38,7 +38,7 @@ turns with the arm, whose elbow is elsewhere in another take (`benchmarks/studie
 SAME_MOVEMENT: Final = 0.3
 """Score below which two gestures may be the same movement with two hand shapes: most of one
 person's pairs of takes are below it, and few pairs of different movements
-(`benchmarks/studies/people.md`)."""
+(`benchmarks/studies/hand-shapes.md`)."""
 
 OTHER_SHAPE: Final = 0.5
 """Mean relative distance of the hand voters from which two shapes are clearly different: beyond
