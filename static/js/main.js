@@ -5,6 +5,7 @@ import { drawClips, findClips } from "./clips/clip-list.js";
 import { knowReferences, reloadClips } from "./clips/clip-pages.js";
 import { drawQuota, followQuota } from "./clips/quota-line.js";
 import { followJob, reloadClip } from "./clips/clip-store.js";
+import { bindLibraryWidth } from "./clips/library-width.js";
 import { drawSampleClips } from "./clips/sample-clips.js";
 import * as api from "./core/api.js";
 import { copyLink } from "./core/clipboard.js";
@@ -170,6 +171,7 @@ async function start() {
   render(iconOf("link"), byId("copy-link"));
   render(iconOf("sun"), byId("sun"));
   bindSun();
+  bindLibraryWidth();
   byId("copy-link").onclick = copyLink;
   bindKeyList({ loadAll: loadViews, startTour, showExample });
   byId("record-clip").onclick = () => go("live", { source: null });

@@ -229,3 +229,30 @@ def test_what_to_do_before_the_camera_has_a_line_of_its_own(
         words, meter = (box for box in boxes if box is not None)
         assert words["y"] >= meter["y"] + meter["height"]
         assert words["height"] < 60
+
+
+def test_the_library_is_made_wider_by_mouse_and_keys_and_stays_so(
+    open_page: OpenPage, library: Library
+) -> None:
+    page = open_page(library.address, scene=False)
+    divider = page.get_by_role("separator", name="Width of the library")
+
+    def width() -> float:
+        box = page.get_by_role("complementary", name="Library").bounding_box()
+        assert box is not None
+        return box["width"]
+
+    assert width() == 316
+    page.mouse.move(316, 400)
+    page.mouse.down()
+    page.mouse.move(420, 400)
+    page.mouse.up()
+    assert width() == 420
+    divider.press("ArrowLeft")
+    assert width() == 400
+    expect(divider).to_have_attribute("aria-valuenow", "400")
+    page.reload()
+    expect(divider).to_have_attribute("aria-valuenow", "400")
+    assert width() == 400
+    divider.dblclick()
+    assert width() == 316
