@@ -334,21 +334,28 @@ def claim_of_absence(recording: Recording) -> str:
 
 
 def measure_claims(takes: Takes) -> None:
-    """Print what is claimed of every take, and how many claims are true, false, or not made."""
+    """Print what is claimed of every take, and how many claims are true, false, or not made.
+
+    Changed are takes that are read right by now, and takes found in clips of which the readers saw
+    that none was found.
+    """
     counts: Counter[str] = Counter()
     with TABLE.open() as file:
         rows = list(csv.DictReader(file))
     for row in rows:
         accepted = {*row["reader_1"].split(), *row["reader_2"].split()}
         claim = find_claim(takes, row["take"])
-        found = "named" if claim in accepted else "false"
-        if claim == "near_gesture":
+        found = "named" if claim in accepted else "false" if claim else "silent"
+        shown = takes.find(row["take"])
+        if not _is_misread(shown) or (row["read_as"] == NO_TAKE) != (shown.context is None):
+            found = "changed"
+        elif claim == "near_gesture":
             found = "alike"
         elif claim == "demonstration" and found == "false" and takes.is_odd(row["take"]):
             found = "odd"
-        counts[found if claim else "silent"] += 1
-        print(f"{row['take']:28} {claim:18} {found if claim else 'silent':8} {sorted(accepted)}")
-    for found in ("named", "odd", "alike", "false", "silent"):
+        counts[found] += 1
+        print(f"{row['take']:28} {claim:18} {found:8} {sorted(accepted)}", flush=True)
+    for found in ("named", "odd", "alike", "false", "silent", "changed"):
         print(f"{found:8} {Share(counts[found], len(rows))} n {counts[found]} of {len(rows)}")
 
 
