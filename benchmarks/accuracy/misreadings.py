@@ -327,6 +327,7 @@ def claim_of_absence(recording: Recording) -> str:
         "the second salute was": "first_salute",
         "degrees away": "turned_away",
         "no hand in": "no_hand",
+        "outside of the picture": "not_seen",
         "hands seen in": "no_hand",
     }
     told = next(why, "")

@@ -42,6 +42,10 @@ from app.recognition.recording.video import (
     read_frames,
 )
 from app.recognition.recording.video_limits import VideoLimits
+from app.recognition.text.wording import humanize
+
+OFTEN_OUTSIDE: Final = 0.5
+"""Share of the frames from which on a wrist outside of the picture is told: half of a take."""
 
 
 def explain_missing_salutes(
@@ -73,12 +77,18 @@ def explain_missing_salutes(
     frames, with_hand = len(hands), sum(map(bool, hands))
     seen = with_hand + without_fingers
     facing = Trajectory.from_poses(poses).facing if poses.seen.any() else None
+    outside, wrist = max((_count_outside(poses, each), each) for each in WRISTS)
     if scores.max(initial=0.0) > ENTER_SCORE:
         yield from _describe_missed_salute(poses.time, scores, hands)
     elif facing is not None and abs(facing) >= TURNED_AWAY:
         yield (
             f"no salute in any of {frames} frames: the diver is turned {abs(facing):.0f} degrees "
             "away; face the camera"
+        )
+    elif outside >= OFTEN_OUTSIDE * frames:
+        yield (
+            f"the {humanize(wrist)} lies outside of the picture in {outside} of {frames} frames, "
+            "so no salute is seen; film from farther, or with the diver in the middle"
         )
     elif with_hand < FEW_HANDS * frames <= seen:
         yield (
@@ -100,6 +110,14 @@ def explain_missing_salutes(
             f"no salute in any of {frames} frames; choose the gesture's range by hand, or "
             "salute with the palm or back of the hand towards the camera"
         )
+
+
+def _count_outside(poses: PoseSequence, landmark: str) -> int:
+    """Count the frames in which a landmark is placed outside of the picture."""
+    if landmark not in poses.landmarks:
+        return 0
+    xy = poses.xy[:, poses.landmarks.index(landmark)]
+    return int(((xy < 0) | (xy > poses.frame_size)).any(axis=1).sum())
 
 
 def _describe_missed_salute(

@@ -147,3 +147,14 @@ def test_what_is_odd_about_the_file_speaks_before_the_salutes() -> None:
     (told,) = explain_missing_salutes(LINE.poses, clear, LINE.hands, odd=["the picture turns"])
     assert told == "two salutes were not seen, and something else is odd: the picture turns"
     assert not list(explain_missing_salutes(LINE.poses, LINE.salute, LINE.hands, odd=["x"]))
+
+
+def test_a_wrist_outside_of_the_picture_is_told_where_no_salute_was_seen() -> None:
+    clear, count = np.zeros(len(LINE.poses)), len(LINE.poses)
+    (told,) = explain_missing_salutes(LINE.poses, clear, LINE.hands)
+    assert "outside" not in told
+    wrist = LINE.poses.landmarks.index("right_wrist")
+    shift = np.array([np.nanmax(LINE.poses.xy[:, wrist, 0]) + 1, 0])
+    beyond = replace(LINE.poses, xy=LINE.poses.xy - shift)
+    (told,) = explain_missing_salutes(beyond, clear, LINE.hands)
+    assert f"the right wrist lies outside of the picture in {count} of {count} frames" in told
