@@ -12,7 +12,7 @@ from playwright.sync_api import Browser, Page, Route, expect
 from app.recognition import Recording
 from app.settings import Settings
 from tests.api.running import Running, running, until
-from tests.browser.conftest import OpenPage
+from tests.browser.conftest import WITHOUT_SCENE, EmptyFrames, OpenPage
 from tests.browser.library import add_clip
 from tests.conftest import RECORDINGS
 
@@ -195,8 +195,9 @@ def test_the_first_gesture_goes_into_a_language_of_ones_own_unless_the_sample_is
 def test_a_film_shows_how_a_gesture_is_made_and_what_is_not_ones_own_is_folded(
     browser: Browser, tmp_path: Path
 ) -> None:
-    with running(Settings(data_dir=tmp_path)) as server:
+    with running(Settings(data_dir=tmp_path), EmptyFrames) as server:
         context = browser.new_context(base_url=server.address)
+        context.add_cookies([{"name": WITHOUT_SCENE, "value": "1", "url": server.address}])
         context.add_init_script("localStorage.setItem('osg-studio.tour', 'seen')")
         page = context.new_page()
         page.goto("/")
