@@ -21,7 +21,7 @@ MARKUP = '<img src=x onerror="window.broken=1">'
 def workspace_of(page: Page) -> str:
     """Return the address of the tab's workspace, as soon as it has one."""
     frame = page.locator("#lab")
-    expect(frame).to_have_attribute("src", re.compile(r"^viser/\w"))
+    expect(frame).to_have_attribute("src", re.compile(r"^viser/[\w-]"))
     return str(frame.get_attribute("src"))
 
 

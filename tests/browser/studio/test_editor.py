@@ -231,7 +231,7 @@ def test_a_gesture_is_shown_anew_trimmed_to_the_frame_and_kept_when_its_clip_is_
     assert isinstance(source, dict)
     assert (source["clip_id"], source["keep_transit"]) == (library.clip, True)
 
-    page.get_by_role("button", name="Change circle", exact=True).click()
+    page = editing(open_page, library)
     page.get_by_label("Start frame").fill("20")
     page.get_by_label("Start frame").blur()
     expect(page.get_by_text("Draft, not saved yet")).to_be_visible()
