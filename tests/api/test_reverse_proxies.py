@@ -131,7 +131,9 @@ def answers(port: int) -> bool:
         return tried.connect_ex(("127.0.0.1", port)) == 0
 
 
-def test_the_studio_works_behind_a_documented_proxy(proxied: str, small_clip: Path) -> None:
+def test_the_studio_and_its_websockets_work_behind_a_documented_proxy(
+    proxied: str, small_clip: Path
+) -> None:
     address = proxied
     content = small_clip.read_bytes()
     # A request from one address that claims another one.
@@ -156,11 +158,8 @@ def test_the_studio_works_behind_a_documented_proxy(proxied: str, small_clip: Pa
             f"{API}/languages", json={"name": "x"}, headers={"Origin": "http://evil.example"}
         )
         assert elsewhere.status_code == 403
-
-
-def test_websockets_pass_a_documented_proxy(proxied: str) -> None:
-    place = proxied.replace("http://", "ws://") + f"{API}/live"
-    with connect(place, origin=proxied, additional_headers=SIGNED_IN) as opened:  # type: ignore[arg-type]
+    place = address.replace("http://", "ws://") + f"{API}/live"
+    with connect(place, origin=address, additional_headers=SIGNED_IN) as opened:  # type: ignore[arg-type]
         assert opened.ping().wait(60)
 
 

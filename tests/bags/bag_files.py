@@ -18,6 +18,7 @@ from app.recognition import Recording
 from app.recognition.poses.frame import Image
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.skeletons import SKELETON_2D
+from tests.conftest import PROCESSORS, RECORDINGS
 
 START = 1_763_731_234_123_456_789
 """Nanoseconds since 1970 of the first stamp: not a round number, so that rounding shows."""
@@ -70,6 +71,12 @@ def zip_of(path: Path, entries: dict[str, bytes]) -> Path:
         for name, content in entries.items():
             archive.writestr(name, content)
     return path
+
+
+def recorded(name: str, folder: Path) -> Path:
+    """Write what was found in a sample clip as a bag, and return its file."""
+    recording = Recording.load(RECORDINGS / PROCESSORS[0] / f"{name}.npz")
+    return file_of(write_bag(folder / name, our_rows(recording)))
 
 
 def stamps(seconds: FloatArray | list[float]) -> list[int]:

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 from urllib.parse import urlencode
 
+import httpx
 import pytest
 from PIL import Image
 from playwright.sync_api import (
@@ -25,7 +26,8 @@ from starlette.responses import HTMLResponse
 from starlette.types import ASGIApp, Receive, Scope, Send
 
 from app.settings import Settings
-from tests.api.running import Running, running
+from tests.api.running import Running, client_of, running
+from tests.browser.library import Library, library_of
 from tests.conftest import ROOT, UPDATES_IMAGES, WITHOUT_BROWSER
 
 WEBGL = (
@@ -114,6 +116,19 @@ def server(settings: Settings) -> Iterator[Running]:
     """Serve the app to the tests of one file; each test adds its data under names of its own."""
     with running(settings, EmptyFrames) as server:
         yield server
+
+
+@pytest.fixture
+def client(server: Running) -> Iterator[httpx.Client]:
+    """Return a client of the server."""
+    with client_of(server.address) as client:
+        yield client
+
+
+@pytest.fixture
+def library(server: Running, client: httpx.Client, request: pytest.FixtureRequest) -> Library:
+    """Return a clip of a circle, and a language of a circle and a line, named as the test."""
+    return library_of(server, client, request.node.name[:40])
 
 
 class EmptyFrames:

@@ -1,7 +1,6 @@
 """The command line, run as a user runs it: files in, text and exit codes out."""
 
 import json
-import os
 import subprocess
 import sys
 from collections.abc import Callable, Sequence
@@ -9,12 +8,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from typer.main import get_command
 
 from app import __version__
 from app.recognition import Gesture, Language, PoseSequence
+from tests.bags.bag_files import recorded
 from tests.command_line import OsgStudio
 from tests.conftest import ROOT
-from tests.short_clips import shortened
 
 LANGUAGE = ROOT / "languages" / "osg-table-2.json"
 
@@ -146,29 +146,21 @@ def test_exported_models_install_elsewhere_without_network(
     assert {line.split("\t")[1] for line in osg_studio("models").out.splitlines()} == {"ok"}
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])
-def test_a_shell_completes_commands_and_options(shell: str) -> None:
+def test_a_shell_completes_commands_and_options(
+    osg_studio: OsgStudio, monkeypatch: pytest.MonkeyPatch, shell: str
+) -> None:
     # Otherwise the shell is detected from the parent processes, which may include none in tests.
-    named = {"_TYPER_COMPLETE_TEST_DISABLE_SHELL_DETECTION": "1"}
-    shown = run_with(named, "--show-completion", shell)
-    assert "osg-studio" in shown
+    monkeypatch.setenv("_TYPER_COMPLETE_TEST_DISABLE_SHELL_DETECTION", "1")
+    monkeypatch.setattr("app.cli.application._build_command", get_command)  # for this variable
+    assert "osg-studio" in osg_studio("--show-completion", shell).out
     typed = {"COMP_WORDS": "osg-studio rec", "COMP_CWORD": "1"}
     typed |= {"_TYPER_COMPLETE_ARGS": "osg-studio rec", "_TYPER_COMPLETE_FISH_ACTION": "get-args"}
-    completed = run_with(typed | {"_OSG_STUDIO_COMPLETE": f"complete_{shell}"})
+    for name, value in (typed | {"_OSG_STUDIO_COMPLETE": f"complete_{shell}"}).items():
+        monkeypatch.setenv(name, value)
+    completed = osg_studio().out
     assert "recognize" in completed
     assert "serve" not in completed
-
-
-def run_with(environment: dict[str, str], *arguments: str) -> str:
-    ended = subprocess.run(
-        [sys.executable, "-m", "app", *arguments],
-        env=os.environ | environment,
-        capture_output=True,
-        text=True,
-        check=True,
-    )
-    return ended.stdout
 
 
 @pytest.mark.slow
@@ -198,11 +190,10 @@ def test_a_language_defined_from_clips_recognises_another_take(
     assert len(take["explanation"]["sentence"].split()) <= 15
 
 
-@pytest.mark.slow
 def test_a_clip_without_salute_ends_with_one_and_says_how_to_go_on(
-    osg_studio: OsgStudio, tmp_path: Path, sample_clips: Path
+    osg_studio: OsgStudio, tmp_path: Path
 ) -> None:
-    clip = shortened(sample_clips / "ordinary-movement.mp4", tmp_path / "idle.mp4", 2.0)
+    clip = recorded("ordinary-movement", tmp_path)
     ended = osg_studio("recognize", clip, "--language", LANGUAGE, "--json")
     assert ended.code == 1
     assert json.loads(ended.out)["takes"] == []
@@ -212,11 +203,10 @@ def test_a_clip_without_salute_ends_with_one_and_says_how_to_go_on(
     assert json.loads(ended.out)["takes"] == []
 
 
-@pytest.mark.slow
 def test_a_gesture_is_found_without_looking_for_salutes(
-    osg_studio: OsgStudio, thin_clip: Callable[[str], Path]
+    osg_studio: OsgStudio, tmp_path: Path
 ) -> None:
-    clip = thin_clip("circle-test-1")
+    clip = recorded("circle-test-1", tmp_path)
     ended = osg_studio("recognize", clip, "--language", LANGUAGE, "--without-salutes", "--json")
     assert ended.code == 0
     (take,) = json.loads(ended.out)["takes"]
@@ -224,11 +214,10 @@ def test_a_gesture_is_found_without_looking_for_salutes(
     assert take["closed"] is True
 
 
-@pytest.mark.slow
 def test_a_range_by_hand_needs_no_salute_and_a_take_of_none_is_judged(
-    osg_studio: OsgStudio, tmp_path: Path, thin_clip: Callable[[str], Path]
+    osg_studio: OsgStudio, tmp_path: Path
 ) -> None:
-    clip = shortened(thin_clip("circle-test-1"), tmp_path / "circle.mp4", 4.4)
+    clip = recorded("circle-test-1", tmp_path)
     arguments = ("recognize", f"{clip}@2.4-4.2", "--language", LANGUAGE, "--expected", "-")
     ended = osg_studio(*arguments)
     assert ended.code == 0
@@ -236,11 +225,10 @@ def test_a_range_by_hand_needs_no_salute_and_a_take_of_none_is_judged(
     assert ended.out.split("\t")[:3] == ["2.40", "4.20", "circle"]
 
 
-@pytest.mark.slow
 def test_what_is_no_gesture_is_rejected_and_ends_with_one(
-    osg_studio: OsgStudio, tmp_path: Path, sample_clips: Path
+    osg_studio: OsgStudio, tmp_path: Path
 ) -> None:
-    clip = shortened(sample_clips / "ordinary-movement.mp4", tmp_path / "idle.mp4", 4.7)
+    clip = recorded("ordinary-movement", tmp_path)
     ended = osg_studio("recognize", f"{clip}@2.5-4.5", "--language", LANGUAGE, "--json")
     assert ended.code == 1
     (take,) = json.loads(ended.out)["takes"]
@@ -248,11 +236,10 @@ def test_what_is_no_gesture_is_rejected_and_ends_with_one(
     assert take["nearest"] in take["gestures"]
 
 
-@pytest.mark.slow
 def test_a_demonstration_without_a_closed_take_is_refused(
-    osg_studio: OsgStudio, tmp_path: Path, sample_clips: Path
+    osg_studio: OsgStudio, tmp_path: Path
 ) -> None:
-    clip = shortened(sample_clips / "ordinary-movement.mp4", tmp_path / "idle.mp4", 1.0)
+    clip = recorded("ordinary-movement", tmp_path)
     file = tmp_path / "pool.json"
     ended = osg_studio("define", f"idle={clip}", "--name", "pool", "--output", file)
     assert ended.code == 2

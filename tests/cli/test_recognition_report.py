@@ -1,22 +1,20 @@
 """The report of ``recognize --json``: what is printed fits the schema that is published."""
 
 import json
-from collections.abc import Callable
 from pathlib import Path
 
 import jsonschema
 import pytest
 
 from app.cli.recognition_report import RecognitionReport
+from tests.bags.bag_files import recorded
 from tests.command_line import OsgStudio
 from tests.conftest import ROOT
 from tests.published_schemas import RECOGNITION_REPORT
-from tests.short_clips import shortened
 
 LANGUAGE = ROOT / "languages" / "osg-table-2.json"
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(
     ("clip", "options"),
     [
@@ -28,13 +26,10 @@ LANGUAGE = ROOT / "languages" / "osg-table-2.json"
 def test_real_reports_fit_the_schema_and_have_no_key_beside_it(
     osg_studio: OsgStudio,
     tmp_path: Path,
-    thin_clip: Callable[[str], Path],
     clip: str,
     options: list[str],
 ) -> None:
-    file = thin_clip(clip)
-    if clip.startswith("ordinary"):
-        file = shortened(file, tmp_path / file.name, 1.5)
+    file = recorded(clip, tmp_path)
     ended = osg_studio("recognize", file, "--language", LANGUAGE, "--json", *options)
     report = json.loads(ended.out)
     jsonschema.validate(report, RECOGNITION_REPORT.content)

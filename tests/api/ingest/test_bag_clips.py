@@ -167,6 +167,7 @@ def test_a_recording_that_cannot_be_used_is_refused_and_nothing_is_kept(
             "encoded as '32FC1', which is not known",
         ),
         "cut short": (cut, "damaged or cut short"),
+        "repair": (cut, "`ros2 bag reindex` or `mcap recover`"),
         "other database": (other, "missing tables"),
         "leads out": (zip_of(tmp_path / "out.zip", {"../x.mcap": b"x"}), "leads out of its folder"),
     }

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -13,7 +13,7 @@ from playwright.sync_api import Page, expect
 
 from app.recognition.recording.video import read_frames
 from tests.api.recordings import recording_of
-from tests.api.running import Running, client_of
+from tests.api.running import Running
 from tests.bags.bag_files import (
     DELAY,
     START,
@@ -32,12 +32,6 @@ from tests.browser.library import Library, add_clip, library_of
 
 EXTRACTION_MS = 300_000
 """Longest wait for the poses of a clip of seven seconds on a loaded machine."""
-
-
-@pytest.fixture
-def client(server: Running) -> Iterator[httpx.Client]:
-    with client_of(server.address) as client:
-        yield client
 
 
 def takes_of(client: httpx.Client, clip_id: str) -> list[dict[str, Any]]:
@@ -67,22 +61,16 @@ def test_a_bag_comes_out_as_the_same_gestures_as_the_clip_itself(
     library = library_of(server, client, "recorded")
     shapes = ("line", "circle", "circle backwards")
     itself = add_clip(server, *shapes, name="itself.mp4")
-    for storage in ("mcap", "sqlite3"):
-        folder = write_bag(
-            tmp_path / storage,
-            published_rows(recording_of(*shapes)),
-            "mcap" if storage == "mcap" else "sqlite3",
-        )
-        page = open_page({"language": library.language}, scene=False)
-        bag = file_of(folder) if storage == "mcap" else zipped(folder)
-        drop(page, bag)
-        expect(page.locator("#clip-name")).to_have_text(bag.name)
-        expect(page.get_by_role("button", name=re.compile("^Take 3"))).to_be_visible()
-        from_bag = clip_shown(page)
-        assert takes_of(client, from_bag) == takes_of(client, itself)
-        assert labels_of(library, from_bag) == labels_of(library, itself)
-        assert labels_of(library, from_bag)[:2] == ["line", "circle"]
-        expect(page.get_by_text("there is no picture: the skeleton is drawn")).to_be_visible()
+    bag = zipped(write_bag(tmp_path / "dive", published_rows(recording_of(*shapes)), "sqlite3"))
+    page = open_page({"language": library.language}, scene=False)
+    drop(page, bag)
+    expect(page.locator("#clip-name")).to_have_text(bag.name)
+    expect(page.get_by_role("button", name=re.compile("^Take 3"))).to_be_visible()
+    from_bag = clip_shown(page)
+    assert takes_of(client, from_bag) == takes_of(client, itself)
+    assert labels_of(library, from_bag) == labels_of(library, itself)
+    assert labels_of(library, from_bag)[:2] == ["line", "circle"]
+    expect(page.get_by_text("there is no picture: the skeleton is drawn")).to_be_visible()
 
 
 def test_the_topic_is_chosen_in_a_dialogue(
@@ -140,18 +128,6 @@ def test_the_topic_is_chosen_in_a_dialogue(
     page.get_by_label("Expected", exact=True).select_option("line")
     page.get_by_role("button", name="Recognise", exact=True).click()
     expect(why.get_by_role("link", name="Share as one file")).to_be_visible()
-
-
-def test_a_broken_bag_says_why_at_its_upload(open_page: OpenPage, tmp_path: Path) -> None:
-    bag = file_of(write_bag(tmp_path / "dive", published_rows(recording_of("line"))))
-    bag.write_bytes(bag.read_bytes()[:-2000])
-    page = open_page(scene=False)
-    drop(page, bag, names=("cut.mcap",))
-    upload = page.get_by_role("list", name="Uploads").get_by_role("listitem")
-    expect(upload).to_contain_text("damaged or cut short")
-    expect(upload).to_contain_text("mcap recover")
-    upload.get_by_role("button", name="Dismiss cut.mcap").click()
-    expect(upload).to_have_count(0)
 
 
 def test_pictures_in_a_bag_are_read_like_the_clip_they_come_from(

@@ -13,6 +13,7 @@ from tests.browser.accessibility import faults
 from tests.browser.clips.test_bags import EXTRACTION_MS, clip_shown, takes_of
 from tests.browser.conftest import OpenPage
 from tests.browser.files import drop
+from tests.recognition.damaged_clips import write_clip
 from tests.short_clips import in_chapters
 
 SEAM_SECONDS = 3.6
@@ -57,11 +58,9 @@ def test_two_chapters_become_one_clip_with_the_take_across_them(
 
 
 def test_chapters_that_are_kept_apart_are_clips_of_their_own(
-    open_page: OpenPage, thin_clip: Callable[[str], Path], tmp_path: Path
+    open_page: OpenPage, installed_models: None, tmp_path: Path
 ) -> None:
-    paths = in_chapters(
-        thin_clip("line-test-2"), tmp_path / "GX010043.MP4", tmp_path / "GX020043.MP4"
-    )
+    paths = [write_clip(tmp_path / f"GX0{number}0043.MP4", frames=4) for number in (1, 2)]
     page = open_page(scene=False)
     drop(page, *paths)
     page.get_by_role("button", name="Keep them apart").click()

@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
 from pathlib import Path
 
 import httpx
-import pytest
 from playwright.sync_api import expect
 
 from app.recognition.poses.skeletons import BODY_25
 from tests.api.ingest.test_keypoint_clips import packed
-from tests.api.running import Running, client_of
+from tests.api.running import Running
 from tests.browser.accessibility import faults
 from tests.browser.conftest import OpenPage
 from tests.browser.files import drop
@@ -21,12 +19,6 @@ from tests.keypoint_files.files import renamed, write_named, write_openpose
 from tests.recognition.strategies import BODY, circle, recording
 
 ARMS = tuple(BODY)
-
-
-@pytest.fixture
-def client(server: Running) -> Iterator[httpx.Client]:
-    with client_of(server.address) as client:
-        yield client
 
 
 def test_a_folder_of_openpose_becomes_a_clip_and_a_gesture(

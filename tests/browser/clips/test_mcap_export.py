@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from playwright.sync_api import Page, expect
+from playwright.sync_api import expect
 
 from app.settings import Settings
 from tests.api.running import Running, client_of
@@ -27,15 +27,20 @@ def library(server: Running) -> Iterator[Library]:
         yield library_of(server, client, "exported")
 
 
-def recognised(open_page: OpenPage, library: Library) -> Page:
-    """Open the page at a recognition of the clip."""
-    return open_page(library.address | {"recognition": library.recognise("circle")}, scene=False)
-
-
-def test_the_page_shows_how_far_the_session_is_and_then_downloads_it(
+def test_the_page_says_why_a_session_fails_and_how_far_it_is_and_then_downloads_it(
     open_page: OpenPage, server: Running, library: Library, tmp_path: Path
 ) -> None:
-    page = recognised(open_page, library)
+    query = library.address | {"recognition": library.recognise("circle")}
+    page = open_page(query, scene=False)
+    page.route(SESSION, lambda route: route.abort())
+    page.get_by_role("button", name="Session as MCAP").click()
+    problem = page.get_by_role("alert").filter(has_text="could not be downloaded")
+    expect(problem).to_contain_text("The server did not answer")
+    expect(problem).to_contain_text("try it again")
+    assert faults(page) == []
+    page.unroute(SESSION)
+    with page.expect_download():
+        page.get_by_role("button", name="Try the session again").click()
     # Any text during the writing will do, since that may be short.
     page.evaluate(
         "window.said = []; new MutationObserver(() => { const now = document.querySelector("
@@ -78,18 +83,3 @@ def test_a_session_can_be_cancelled(
     expect(page.get_by_text("The session is cancelled")).to_have_count(0)
     left = {each.name for each in (settings.data_dir / "clips").iterdir()}
     assert left == {clip["id"] for clip in library.client.get("/api/v1/clips").json()}
-
-
-def test_a_session_that_fails_says_why_and_can_be_tried_again(
-    open_page: OpenPage, library: Library
-) -> None:
-    page = recognised(open_page, library)
-    page.route(SESSION, lambda route: route.abort())
-    page.get_by_role("button", name="Session as MCAP").click()
-    problem = page.get_by_role("alert").filter(has_text="could not be downloaded")
-    expect(problem).to_contain_text("The server did not answer")
-    expect(problem).to_contain_text("try it again")
-    assert faults(page) == []
-    page.unroute(SESSION)
-    with page.expect_download():
-        page.get_by_role("button", name="Try the session again").click()

@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
 from itertools import pairwise
 
 import pytest
 from playwright.sync_api import FloatRect, Locator, Page, expect
 
-from tests.api.running import Running, client_of, until
+from tests.api.running import Running, until
 from tests.browser.conftest import OpenPage
-from tests.browser.library import Library, add_clip, library_of
+from tests.browser.library import Library, add_clip
 
 WARNING = "This range contains 2 Vulcan salutes"
 
@@ -19,12 +18,6 @@ SIDES = (
     "all => all.map(each => each.getBoundingClientRect()).map(({ left, right }) => [left, right])"
 )
 """Left and right of all elements at one moment: the page may draw them anew at the next."""
-
-
-@pytest.fixture
-def library(server: Running, request: pytest.FixtureRequest) -> Iterator[Library]:
-    with client_of(server.address) as client:
-        yield library_of(server, client, request.node.name[:40])
 
 
 def box_of(locator: Locator) -> FloatRect:
@@ -91,6 +84,11 @@ def test_a_long_timeline_is_enlarged_and_its_labels_never_overlap(
     clip = add_clip(server, *["circle"] * 17, name="long dive.mp4")
     page = open_page({"clip": clip, "language": library.language}, scene=False, size=(1024, 768))
     expect(page.locator(".take")).to_have_count(17)
+    names = page.locator(".take-name")
+    expect(names).to_have_count(17)
+    cut = "(each) => each.filter((e) => e.offsetWidth > e.parentElement.clientWidth).length"
+    assert names.evaluate_all(cut) == 0
+    expect(page.get_by_role("button", name="Take 17,")).to_be_visible()
     track = page.locator(".track")
     width = box_of(track)["width"]
     ticks = page.locator(".ruler span")

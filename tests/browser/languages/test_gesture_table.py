@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from pathlib import Path
 
 import httpx
-import pytest
 from playwright.sync_api import Locator, Page, expect
 
-from app.recognition.language.file import short_code
-from tests.api.running import Running, client_of
+from tests.api.running import Running
 from tests.browser.accessibility import faults
 from tests.browser.conftest import OpenPage
 from tests.browser.library import add_clip, library_of
@@ -25,12 +23,6 @@ addEventListener("pointerdown", () => { window.presses += 1; }, { capture: true 
 """
 
 NAMES = ("up", "down", "stop", "follow me", "bring light", "take picture", "return", "stay")
-
-
-@pytest.fixture
-def client(server: Running) -> Iterator[httpx.Client]:
-    with client_of(server.address) as client:
-        yield client
 
 
 def presses(page: Page) -> int:
@@ -196,21 +188,6 @@ def test_takes_of_known_gestures_become_further_demonstrations_where_they_are_mi
     assert shown() == {"circle": 1, "line": 2}
 
 
-def test_a_phone_shows_every_field_of_the_table(
-    open_page: OpenPage, server: Running, client: httpx.Client
-) -> None:
-    library = library_of(server, client, "narrow")
-    page = open_page({"language": library.language}, scene=False, size=(390, 844))
-    dialog = open_table(page)
-    for field in dialog.get_by_role("listitem").first.locator("input").all():
-        box = field.bounding_box()
-        assert box is not None
-        assert 0 <= box["x"] <= box["x"] + box["width"] <= 390
-    assert page.evaluate("document.documentElement.scrollWidth") <= 390
-    page.keyboard.press("Escape")
-    expect(dialog).to_be_hidden()
-
-
 def test_why_a_clip_was_misread_takes_one_click_after_recognising(
     open_page: OpenPage, server: Running, client: httpx.Client
 ) -> None:
@@ -222,18 +199,6 @@ def test_why_a_clip_was_misread_takes_one_click_after_recognising(
     meant.get_by_role("button", name="line").click()
     expect(why).to_contain_text(re.compile(".line."))
     assert presses(page) == 1
-
-
-def test_the_page_shows_the_code_that_the_exported_file_gives(
-    open_page: OpenPage, server: Running, client: httpx.Client
-) -> None:
-    library = library_of(server, client, "carried")
-    page = open_page(library.address, scene=False)
-    exported = client.get(f"/api/v1/languages/{library.language}/export").json()
-    code = short_code(exported["sha256"])
-    expect(page.locator("#carried")).to_contain_text(f"A robot that has revision 3 shows {code}")
-    page.get_by_role("button", name="Export").click()
-    expect(page.get_by_role("dialog", name="Export")).to_contain_text(f"code {code}")
 
 
 def test_of_rows_that_are_alike_the_best_are_kept_and_the_others_say_why(
@@ -262,3 +227,11 @@ def test_of_rows_that_are_alike_the_best_are_kept_and_the_others_say_why(
     left_out.get_by_role("checkbox").check()
     expect(left_out).to_have_count(0)
     expect(dialog).to_contain_text("of 3")
+    # A phone shows every field.
+    for field in dialog.get_by_role("listitem").first.locator("input").all():
+        box = field.bounding_box()
+        assert box is not None
+        assert 0 <= box["x"] <= box["x"] + box["width"] <= 390
+    assert page.evaluate("document.documentElement.scrollWidth") <= 390
+    page.keyboard.press("Escape")
+    expect(dialog).to_be_hidden()

@@ -62,85 +62,82 @@ def test_the_nearest_gesture_opens_the_two_on_one_time_cursor(
     expect(near).to_be_visible()
 
 
-def test_what_to_expect_is_measured_among_people_and_the_test_set_stands_first(
-    open_page: OpenPage, server: Running, picture: Callable[[Page, str], Path]
+def test_of_one_persons_language_nothing_is_foretold_and_of_an_empty_one_nothing_checked(
+    open_page: OpenPage, library: Library
 ) -> None:
-    with client_of(server.address) as client:
-        content = with_wrong_take().to_json()
-        language = client.post("/api/v1/languages/import?name=three", content=content).json()["id"]
-        page = open_page({"view": "health", "language": language}, scene=False, size=(1440, 900))
-        expected = page.get_by_role("region", name="What to expect")
-        expect(expected).to_contain_text("Of 12 demonstrations")
-        expect(expected).to_contain_text("are read right by those of other people")
-        expect(expected).to_contain_text("read as another")
-        findings = page.get_by_role("list", name="Findings")
-        expect(findings).to_contain_text("Cy's is read as wedge")
-        # Whose demonstration fails and the way to more people are one sight.
-        expect(findings.get_by_text("Cy's is read as wedge")).to_be_in_viewport(ratio=1)
-        expect(page.get_by_role("button", name="Invite people")).to_be_in_viewport(ratio=1)
-        expect(known_of(page).get_by_role("row").filter(has_text="infinity")).to_contain_text(
-            "2 of 3"
-        )
-        # Every keypoint is seen, and no gesture needs more than its figure: that takes no columns.
-        heads = known_of(page).get_by_role("columnheader")
-        expect(heads).to_have_text(
-            ["Gesture", "Read right by the others\u2019 demonstrations", "Nearest gesture"]
-        )
-        assert faults(page) == []
-        picture(page, "health")
-        clip = add_clip(server, "circle", name="circle-measured.mp4")
-        test_set = f"/api/v1/languages/{language}/test-set"
-        take = {"clip_id": clip, "expected": "circle"}
-        client.post(test_set, json={"takes": [take]}).raise_for_status()
-        client.post(f"{test_set}/run").raise_for_status()
-        page.reload()
-        first = expected.locator("p").first
-        expect(first).to_contain_text("Of the test set")
-        expect(first).to_contain_text("of 1 takes are read right")
-        expect(known_of(page).get_by_role("columnheader", name="Test set")).to_be_visible()
-        # The test is nearer than the map, which tells less of what others will reach.
-        headings = page.get_by_role("heading", level=2).all_inner_texts()
-        assert headings.index("Test with clips") < headings.index("Map")
-
-
-def test_the_author_answers_whether_the_hands_of_two_gestures_are_meant(
-    open_page: OpenPage, server: Running, picture: Callable[[Page, str], Path]
-) -> None:
-    shown = (("fist", draw(FIST, circle())), ("flat", draw(FLAT, circle(0.42), seed=1)))
-    content = Language(
-        "hands", [Gesture.from_demonstration(label, poses) for label, poses in shown]
-    ).to_json()
-    with client_of(server.address) as client:
-        language = client.post("/api/v1/languages/import?name=hands", content=content).json()["id"]
-        exported = f"/api/v1/languages/{language}/export?format=osg-studio"
-        page = open_page({"view": "health", "language": language}, scene=False)
-        question = page.get_by_role("listitem").filter(has_text="On purpose?")
-        expect(question.get_by_role("img", name="Hand of")).to_have_count(2)
-        assert faults(page) == []
-        picture(page, "hands-undecided")
-        for answer, position in (("Yes", "on"), ("No", "off")):
-            question.get_by_role("button", name=answer, exact=True).click()
-            expect(question).to_have_count(0)
-            assert client.get(exported).text.count(f'"hand_shape":"{position}"') == 2
-            page.keyboard.press("Control+z")
-            expect(question).to_be_visible()
-
-
-def test_of_one_persons_language_nothing_is_foretold(open_page: OpenPage, library: Library) -> None:
+    empty = library.client.post("/api/v1/languages", json={"name": "empty"}).json()["id"]
     page = open_page(health_of(library), scene=False)
     expected = page.get_by_role("region", name="What to expect")
     expect(expected).to_contain_text("nothing can be foretold")
     expect(expected).to_contain_text("Ask two more people")
     expect(known_of(page)).not_to_contain_text("other people")
-
-
-def test_a_rate_is_rounded_as_in_the_findings(open_page: OpenPage) -> None:
-    page = open_page(scene=False)
-    rates = [takes / 40 for takes in range(41)]
-    rounded = page.evaluate(
-        "async (rates) => rates.map((await import('/static/js/health/rates.js')).percent)", rates
+    section = page.get_by_role("region", name="What is rejected")
+    expect(section).to_contain_text(
+        "One person has shown this language. The limit is a cautious constant: ask two more people."
     )
-    assert rounded == [f"{rate:.0%}".removesuffix("%") for rate in rates]
+    expect(section.get_by_label("Right takes refused, at most")).to_be_disabled()
+    page.get_by_label("Language", exact=True).select_option(empty)
+    expect(page.get_by_text("No gestures to check yet")).to_be_visible()
+
+
+def test_what_to_expect_is_measured_among_people_and_the_test_set_stands_first(
+    open_page: OpenPage, server: Running, picture: Callable[[Page, str], Path], client: httpx.Client
+) -> None:
+    content = with_wrong_take().to_json()
+    language = client.post("/api/v1/languages/import?name=three", content=content).json()["id"]
+    page = open_page({"view": "health", "language": language}, scene=False, size=(1440, 900))
+    expected = page.get_by_role("region", name="What to expect")
+    expect(expected).to_contain_text("Of 12 demonstrations")
+    expect(expected).to_contain_text("are read right by those of other people")
+    expect(expected).to_contain_text("read as another")
+    findings = page.get_by_role("list", name="Findings")
+    expect(findings).to_contain_text("Cy's is read as wedge")
+    # Whose demonstration fails and the way to more people are one sight.
+    expect(findings.get_by_text("Cy's is read as wedge")).to_be_in_viewport(ratio=1)
+    expect(page.get_by_role("button", name="Invite people")).to_be_in_viewport(ratio=1)
+    expect(known_of(page).get_by_role("row").filter(has_text="infinity")).to_contain_text("2 of 3")
+    # Every keypoint is seen, and no gesture needs more than its figure: that takes no columns.
+    heads = known_of(page).get_by_role("columnheader")
+    expect(heads).to_have_text(
+        ["Gesture", "Read right by the others\u2019 demonstrations", "Nearest gesture"]
+    )
+    assert faults(page) == []
+    picture(page, "health")
+    clip = add_clip(server, "circle", name="circle-measured.mp4")
+    test_set = f"/api/v1/languages/{language}/test-set"
+    take = {"clip_id": clip, "expected": "circle"}
+    client.post(test_set, json={"takes": [take]}).raise_for_status()
+    client.post(f"{test_set}/run").raise_for_status()
+    page.reload()
+    first = expected.locator("p").first
+    expect(first).to_contain_text("Of the test set")
+    expect(first).to_contain_text("of 1 takes are read right")
+    expect(known_of(page).get_by_role("columnheader", name="Test set")).to_be_visible()
+    # The test is nearer than the map, which tells less of what others will reach.
+    headings = page.get_by_role("heading", level=2).all_inner_texts()
+    assert headings.index("Test with clips") < headings.index("Map")
+
+
+def test_the_author_answers_whether_the_hands_of_two_gestures_are_meant(
+    open_page: OpenPage, client: httpx.Client, picture: Callable[[Page, str], Path]
+) -> None:
+    shown = (("fist", draw(FIST, circle())), ("flat", draw(FLAT, circle(0.42), seed=1)))
+    content = Language(
+        "hands", [Gesture.from_demonstration(label, poses) for label, poses in shown]
+    ).to_json()
+    language = client.post("/api/v1/languages/import?name=hands", content=content).json()["id"]
+    exported = f"/api/v1/languages/{language}/export?format=osg-studio"
+    page = open_page({"view": "health", "language": language}, scene=False)
+    question = page.get_by_role("listitem").filter(has_text="On purpose?")
+    expect(question.get_by_role("img", name="Hand of")).to_have_count(2)
+    assert faults(page) == []
+    picture(page, "hands-undecided")
+    for answer, position in (("Yes", "on"), ("No", "off")):
+        question.get_by_role("button", name=answer, exact=True).click()
+        expect(question).to_have_count(0)
+        assert client.get(exported).text.count(f'"hand_shape":"{position}"') == 2
+        page.keyboard.press("Control+z")
+        expect(question).to_be_visible()
 
 
 def import_crowd(client: httpx.Client) -> str:
@@ -201,23 +198,6 @@ def test_the_dial_is_turned_shows_both_costs_and_is_turned_back(
     expect(section).to_contain_text("8 % (1 to 35) are refused")
 
 
-def test_the_dial_of_one_persons_language_asks_for_two_more_people(
-    open_page: OpenPage, library: Library
-) -> None:
-    page = open_page(health_of(library), scene=False)
-    section = page.get_by_role("region", name="What is rejected")
-    expect(section).to_contain_text(
-        "One person has shown this language. The limit is a cautious constant: ask two more people."
-    )
-    expect(section.get_by_label("Right takes refused, at most")).to_be_disabled()
-
-
-def test_a_language_without_gestures_says_what_to_do(open_page: OpenPage, library: Library) -> None:
-    empty = library.client.post("/api/v1/languages", json={"name": "empty"}).json()["id"]
-    page = open_page({"view": "health", "language": empty}, scene=False)
-    expect(page.get_by_text("No gestures to check yet")).to_be_visible()
-
-
 def test_labelled_clips_are_tested_corrected_and_opened(
     open_page: OpenPage, library: Library, server: Running, tmp_path: Path
 ) -> None:
@@ -250,102 +230,103 @@ def test_labelled_clips_are_tested_corrected_and_opened(
 
 
 def test_clips_of_the_library_are_tested_and_the_only_demonstration_cannot_be(
-    open_page: OpenPage, server: Running
+    open_page: OpenPage, server: Running, client: httpx.Client
 ) -> None:
-    with client_of(server.address) as client:
-        library = library_of(server, client, "test set")
-        add_clip(server, "circle", name="circle-other.mp4")
-        test_set = f"/api/v1/languages/{library.language}/test-set"
-        demonstration = {"clip_id": library.clip, "expected": "circle"}
-        client.post(test_set, json={"takes": [demonstration]}).raise_for_status()
-        page = open_page(health_of(library), scene=False)
-        page.get_by_role("button", name="Test with clips").click()
-        expect(page.get_by_role("heading", name="Test with clips")).to_be_in_viewport()
-        expect(page.get_by_text("cannot be tested: the only demonstration")).to_be_visible()
-        page.get_by_text("Choose from the").click()
-        chosen = page.locator(".library-boxes input:checked")
-        while chosen.count():
-            chosen.first.uncheck()
-        page.get_by_role("checkbox", name="circle-other.mp4").check()
-        page.get_by_role("button", name="Test the chosen clips").click()
-        section = page.get_by_role("region", name="Test with clips")
-        expect(section).to_contain_text("1 of 2 recognised as labelled, 1 cannot be tested")
-        rates = page.get_by_role("list", name="Rate of each gesture")
-        expect(rates).to_contain_text("circle 1 of 1")
-        # A wrong result differs from a right one by more than the shade.
-        page.get_by_label("What circle-other.mp4 shows").select_option("line")
-        wrong = page.get_by_role("gridcell", name="1 take of line read as circle")
-        expect(wrong).to_have_css("background-image", re.compile("repeating-linear-gradient"))
+    library = library_of(server, client, "test set")
+    add_clip(server, "circle", name="circle-other.mp4")
+    going = add_clip(server, "line", name="going.mp4")
+    test_set = f"/api/v1/languages/{library.language}/test-set"
+    demonstration = {"clip_id": library.clip, "expected": "circle"}
+    client.post(test_set, json={"takes": [demonstration]}).raise_for_status()
+    page = open_page(health_of(library), scene=False)
+    page.get_by_role("button", name="Test with clips").click()
+    expect(page.get_by_role("heading", name="Test with clips")).to_be_in_viewport()
+    expect(page.get_by_text("cannot be tested: the only demonstration")).to_be_visible()
+    page.get_by_text("Choose from the").click()
+    chosen = page.locator(".library-boxes input:checked")
+    while chosen.count():
+        chosen.first.uncheck()
+    page.get_by_role("checkbox", name="circle-other.mp4").check()
+    # A chosen clip stays chosen when another one goes.
+    client.delete(f"/api/v1/clips/{going}").raise_for_status()
+    expect(page.get_by_role("checkbox", name="going.mp4")).to_have_count(0)
+    expect(page.get_by_role("checkbox", name="circle-other.mp4")).to_be_checked()
+    page.get_by_role("button", name="Test the chosen clips").click()
+    section = page.get_by_role("region", name="Test with clips")
+    expect(section).to_contain_text("1 of 2 recognised as labelled, 1 cannot be tested")
+    rates = page.get_by_role("list", name="Rate of each gesture")
+    expect(rates).to_contain_text("circle 1 of 1")
+    # A wrong result differs from a right one by more than the shade.
+    page.get_by_label("What circle-other.mp4 shows").select_option("line")
+    wrong = page.get_by_role("gridcell", name="1 take of line read as circle")
+    expect(wrong).to_have_css("background-image", re.compile("repeating-linear-gradient"))
 
 
 def test_chosen_clips_are_sent_at_once_and_a_page_that_is_left_loses_none(
-    open_page: OpenPage, server: Running
+    open_page: OpenPage, server: Running, client: httpx.Client
 ) -> None:
-    with client_of(server.address) as client:
-        library = library_of(server, client, "test of many")
-        names = [f"circle-many-{number}.mp4" for number in range(4)]
-        for name in names:
-            add_clip(server, "circle", name=name)
-        page = open_page(health_of(library), scene=False)
-        page.get_by_role("button", name="Test with clips").click()
-        page.get_by_text("Choose from the").click()
-        chosen = page.locator(".library-boxes input:checked")
-        while chosen.count():
-            chosen.first.uncheck()
-        for name in names:
-            page.get_by_role("checkbox", name=name).check()
-        with page.expect_request("**/test-set/run"):
-            page.get_by_role("button", name="Test the chosen clips").click()
-        page.wait_for_timeout(300)  # The request is on its way; the run takes longer.
-        page.close()
-        address = f"/api/v1/languages/{library.language}/test-set"
-        until(lambda: client.get(address).json()["overall"]["asked"] == len(names))
+    library = library_of(server, client, "test of many")
+    names = [f"circle-many-{number}.mp4" for number in range(4)]
+    for name in names:
+        add_clip(server, "circle", name=name)
+    page = open_page(health_of(library), scene=False)
+    page.get_by_role("button", name="Test with clips").click()
+    page.get_by_text("Choose from the").click()
+    chosen = page.locator(".library-boxes input:checked")
+    while chosen.count():
+        chosen.first.uncheck()
+    for name in names:
+        page.get_by_role("checkbox", name=name).check()
+    with page.expect_request("**/test-set/run"):
+        page.get_by_role("button", name="Test the chosen clips").click()
+    page.wait_for_timeout(300)  # The request is on its way; the run takes longer.
+    page.close()
+    address = f"/api/v1/languages/{library.language}/test-set"
+    until(lambda: client.get(address).json()["overall"]["asked"] == len(names))
 
 
 def test_a_clip_between_two_gestures_is_asked_back_and_counted_on_its_own(
-    open_page: OpenPage, server: Running
+    open_page: OpenPage, server: Running, client: httpx.Client
 ) -> None:
-    with client_of(server.address) as client:
-        library = library_of(server, client, "asking")
-        library.add_gesture("ring")
-        clip = add_clip(server, "circle", name="circle-asked.mp4")
-        test_set = f"/api/v1/languages/{library.language}/test-set"
-        take = {"clip_id": clip, "expected": "circle"}
-        client.post(test_set, json={"takes": [take]}).raise_for_status()
-        client.post(f"{test_set}/run").raise_for_status()
-        page = open_page(health_of(library), scene=False)
-        section = page.get_by_role("region", name="Test with clips")
-        expect(section).to_contain_text("0 of 1 recognised as labelled")
-        expect(section).to_contain_text("1 asked back, 1 of them with the right gesture")
-        takes = page.get_by_role("table", name="The test clips")
-        expect(takes).to_contain_text("asked back: circle or ring?, the right one is in it")
-        assert faults(page) == []
-        asked = page.get_by_role("gridcell", name="1 take of circle asked back")
-        expect(asked).to_have_css("border-style", "dashed")
-        asked.click()
-        expect(page.locator("#outcome.asked")).to_contain_text("circle or ring?, expected circle")
+    library = library_of(server, client, "asking")
+    library.add_gesture("ring")
+    clip = add_clip(server, "circle", name="circle-asked.mp4")
+    test_set = f"/api/v1/languages/{library.language}/test-set"
+    take = {"clip_id": clip, "expected": "circle"}
+    client.post(test_set, json={"takes": [take]}).raise_for_status()
+    client.post(f"{test_set}/run").raise_for_status()
+    page = open_page(health_of(library), scene=False)
+    section = page.get_by_role("region", name="Test with clips")
+    expect(section).to_contain_text("0 of 1 recognised as labelled")
+    expect(section).to_contain_text("1 asked back, 1 of them with the right gesture")
+    takes = page.get_by_role("table", name="The test clips")
+    expect(takes).to_contain_text("asked back: circle or ring?, the right one is in it")
+    assert faults(page) == []
+    asked = page.get_by_role("gridcell", name="1 take of circle asked back")
+    expect(asked).to_have_css("border-style", "dashed")
+    asked.click()
+    expect(page.locator("#outcome.asked")).to_contain_text("circle or ring?, expected circle")
 
 
 def test_a_change_of_the_language_repeats_the_test_and_says_what_got_worse(
-    open_page: OpenPage, server: Running
+    open_page: OpenPage, server: Running, client: httpx.Client
 ) -> None:
-    with client_of(server.address) as client:
-        library = library_of(server, client, "changed")
-        gesture = f"/api/v1/languages/{library.language}/gestures?label=circle"
-        client.patch(gesture, json={"direction": "off"}).raise_for_status()
-        clip = add_clip(server, "circle backwards", name="other way.mp4")
-        tested = replace(library, clip=clip)
-        query = {**tested.address, "recognition": tested.recognise("circle")}
-        page = open_page(query, scene=False)
-        page.get_by_role("button", name="Keep as a test").click()
-        expect(page.get_by_text("In the test set")).to_be_visible()
-        client.patch(gesture, json={"direction": "on"}).raise_for_status()
-        expect(page.get_by_text("1 take worse since the revision before")).to_be_visible()
-        page.get_by_role("button", name="Show", exact=True).last.click()
-        section = page.get_by_role("region", name="Test with clips")
-        expect(section).to_contain_text("1 take worse since the revision before")
-        expect(section.get_by_role("row").filter(has_text="other way.mp4")).to_contain_text("worse")
-        assert faults(page) == []
+    library = library_of(server, client, "changed")
+    gesture = f"/api/v1/languages/{library.language}/gestures?label=circle"
+    client.patch(gesture, json={"direction": "off"}).raise_for_status()
+    clip = add_clip(server, "circle backwards", name="other way.mp4")
+    tested = replace(library, clip=clip)
+    query = {**tested.address, "recognition": tested.recognise("circle")}
+    page = open_page(query, scene=False)
+    page.get_by_role("button", name="Keep as a test").click()
+    expect(page.get_by_text("In the test set")).to_be_visible()
+    client.patch(gesture, json={"direction": "on"}).raise_for_status()
+    expect(page.get_by_text("1 take worse since the revision before")).to_be_visible()
+    page.get_by_role("button", name="Show", exact=True).last.click()
+    section = page.get_by_role("region", name="Test with clips")
+    expect(section).to_contain_text("1 take worse since the revision before")
+    expect(section.get_by_role("row").filter(has_text="other way.mp4")).to_contain_text("worse")
+    assert faults(page) == []
 
 
 def is_test_set(request: Request) -> bool:
@@ -397,19 +378,6 @@ def test_a_change_while_a_clip_is_added_to_the_test_holds(
         expect(shows).to_have_value("line")
 
 
-def test_a_chosen_clip_stays_chosen_when_another_one_goes(
-    open_page: OpenPage, server: Running, library: Library
-) -> None:
-    add_clip(server, "line", name="chosen.mp4")
-    other = add_clip(server, "line", name="going.mp4")
-    page = open_page(health_of(library), scene=False)
-    page.get_by_text("Choose from the").click()
-    page.get_by_role("checkbox", name="chosen.mp4").check()
-    library.client.delete(f"/api/v1/clips/{other}").raise_for_status()
-    expect(page.get_by_role("checkbox", name="going.mp4")).to_have_count(0)
-    expect(page.get_by_role("checkbox", name="chosen.mp4")).to_be_checked()
-
-
 def test_a_dropped_clip_is_labelled_by_its_name(
     open_page: OpenPage, library: Library, clips: Path
 ) -> None:
@@ -434,36 +402,35 @@ def test_a_dropped_clip_is_labelled_by_its_name(
 
 
 def test_one_of_two_alike_gestures_gets_another_movement_and_undo_takes_it_back(
-    open_page: OpenPage, server: Running
+    open_page: OpenPage, server: Running, client: httpx.Client
 ) -> None:
-    with client_of(server.address) as client:
-        language = client.post("/api/v1/languages", json={"name": "alike"}).json()["id"]
-        library = Library("", language, client)
-        for label, shape in (("box", "circle"), ("frame", "circle"), ("line", "line")):
-            clip = add_clip(server, shape, name=f"{label} of {language}.mp4")
-            library.add_gesture(label, clip, f"what {label} means")
-        page = open_page(health_of(library), scene=False)
-        findings = page.get_by_role("list", name="Findings")
-        same = findings.get_by_role("listitem").filter(has_text="box and frame are the same")
-        same.get_by_role("button", name="Change one of the two").click()
-        dialog = page.get_by_role("dialog", name="Change box or frame")
-        expect(dialog.get_by_text("By the distances of one person")).to_be_visible()
-        for width in (1280, 390):
-            page.set_viewport_size({"width": width, "height": 800})
-            assert faults(page) == []
-            assert page.evaluate("document.documentElement.scrollWidth <= innerWidth")
-        cards = dialog.get_by_role("heading", name="Instead of frame").locator("+ ul button")
-        expect(cards.first).to_contain_text("Nearest is")
-        cards.first.click()
-        expect(dialog).to_be_hidden()
-        expect(page.get_by_text("frame has another movement")).to_be_visible()
-        expect(page.locator(".verdict")).to_contain_text("no errors")
-        expect(same).to_be_hidden()
-        changed = client.get(f"/api/v1/languages/{language}").json()
-        assert changed["labels"] == ["box", "frame", "line"]
-        assert changed["gestures"][1]["description"] == "what frame means"
-        page.keyboard.press("Control+z")
-        expect(same).to_be_visible()
+    language = client.post("/api/v1/languages", json={"name": "alike"}).json()["id"]
+    library = Library("", language, client)
+    for label, shape in (("box", "circle"), ("frame", "circle"), ("line", "line")):
+        clip = add_clip(server, shape, name=f"{label} of {language}.mp4")
+        library.add_gesture(label, clip, f"what {label} means")
+    page = open_page(health_of(library), scene=False)
+    findings = page.get_by_role("list", name="Findings")
+    same = findings.get_by_role("listitem").filter(has_text="box and frame are the same")
+    same.get_by_role("button", name="Change one of the two").click()
+    dialog = page.get_by_role("dialog", name="Change box or frame")
+    expect(dialog.get_by_text("By the distances of one person")).to_be_visible()
+    for width in (1280, 390):
+        page.set_viewport_size({"width": width, "height": 800})
+        assert faults(page) == []
+        assert page.evaluate("document.documentElement.scrollWidth <= innerWidth")
+    cards = dialog.get_by_role("heading", name="Instead of frame").locator("+ ul button")
+    expect(cards.first).to_contain_text("Nearest is")
+    cards.first.click()
+    expect(dialog).to_be_hidden()
+    expect(page.get_by_text("frame has another movement")).to_be_visible()
+    expect(page.locator(".verdict")).to_contain_text("no errors")
+    expect(same).to_be_hidden()
+    changed = client.get(f"/api/v1/languages/{language}").json()
+    assert changed["labels"] == ["box", "frame", "line"]
+    assert changed["gestures"][1]["description"] == "what frame means"
+    page.keyboard.press("Control+z")
+    expect(same).to_be_visible()
 
 
 def test_proposals_can_be_left_fail_and_be_none(open_page: OpenPage, library: Library) -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
 
 import pytest
@@ -12,13 +12,7 @@ from app.recognition import Language
 from tests.api.running import Running, client_of, until
 from tests.browser.conftest import OpenPage
 from tests.browser.files import drop
-from tests.browser.library import Library, library_of
-
-
-@pytest.fixture
-def library(server: Running, request: pytest.FixtureRequest) -> Iterator[Library]:
-    with client_of(server.address) as client:
-        yield library_of(server, client, request.node.name.removeprefix("test_")[:40])
+from tests.browser.library import Library
 
 
 @pytest.fixture
@@ -40,7 +34,7 @@ def command(page: Page, name: str, text: str) -> None:
 
 
 def test_a_language_is_renamed_duplicated_and_deleted_and_all_is_taken_back(
-    open_page: OpenPage, library: Library, name: str
+    open_page: OpenPage, name: str
 ) -> None:
     page = open_page({"view": "languages"}, scene=False)
     expect(card(page, name).get_by_text("2 gestures")).to_be_visible()
@@ -62,16 +56,6 @@ def test_a_language_is_renamed_duplicated_and_deleted_and_all_is_taken_back(
     expect(card(page, "the reef (copy)")).to_have_count(0)
     page.keyboard.press("Control+z")
     expect(card(page, name)).to_have_count(1)
-
-
-def test_people_are_invited_from_the_language_in_the_list(
-    open_page: OpenPage, library: Library, name: str
-) -> None:
-    page = open_page({"view": "languages"}, scene=False)
-    command(page, name, "Invite people")
-    expect(page.get_by_role("heading", name=f"Health of {name}")).to_be_visible()
-    page.get_by_role("button", name="Invite people").click()
-    expect(page.get_by_role("dialog", name=f"Invite people to {name}")).to_be_visible()
 
 
 def test_a_language_that_is_exported_and_dropped_again_is_the_same_and_undo_takes_it_away(
@@ -117,20 +101,17 @@ def copy_of_the_sample_with_phrases(library: Library, change: Mapping[str, objec
     return copy
 
 
-@pytest.mark.usefixtures("library")
-def test_a_language_is_found_by_a_gesture(open_page: OpenPage) -> None:
-    page = open_page({"view": "languages"}, scene=False)
-    page.get_by_label("Find languages").fill("infinity")
-    expect(card(page, "Table 2: eight signs")).to_be_visible()
-    expect(card(page, "Table 1: three signs")).to_have_count(0)
-    page.get_by_label("Find languages").fill("no such gesture")
-    expect(page.get_by_text("No language is called")).to_be_visible()
-
-
-def test_the_keyboard_reaches_every_command_of_a_card(
-    open_page: OpenPage, library: Library, name: str
+def test_a_language_is_found_by_a_gesture_and_keys_reach_every_command_of_its_card(
+    open_page: OpenPage, name: str
 ) -> None:
     page = open_page({"view": "languages"}, scene=False)
+    find = page.get_by_label("Find languages")
+    find.fill("infinity")
+    expect(card(page, "Table 2: eight signs")).to_be_visible()
+    expect(card(page, "Table 1: three signs")).to_have_count(0)
+    find.fill("no such gesture")
+    expect(page.get_by_text("No language is called")).to_be_visible()
+    find.fill("")
     page.get_by_label(f"What to do with {name}", exact=True).focus()
     page.keyboard.press("Enter")
     for text in ("Rename\u2026", "Duplicate", "History", "Invite people", "Export", "Delete"):
@@ -138,20 +119,27 @@ def test_the_keyboard_reaches_every_command_of_a_card(
         expect(page.locator(":focus")).to_have_text(text)
     page.keyboard.press("Escape")
     expect(card(page, name).get_by_text("Duplicate")).to_be_hidden()
-    page.keyboard.press("Enter")
-    expect(card(page, name).get_by_text("Duplicate")).to_be_visible()
+    command(page, name, "Invite people")
+    expect(page.get_by_role("heading", name=f"Health of {name}")).to_be_visible()
+    page.get_by_role("button", name="Invite people").click()
+    expect(page.get_by_role("dialog", name=f"Invite people to {name}")).to_be_visible()
 
 
-def test_two_revisions_are_compared_under_an_address_of_their_own(
+def test_two_revisions_are_compared_under_an_address_of_their_own_on_a_phone_too(
     open_page: OpenPage, library: Library, name: str
 ) -> None:
     library.client.delete(f"/api/v1/languages/{library.language}/gestures/line")
     page = open_page({"view": "languages"}, scene=False)
+    page.set_viewport_size({"width": 390, "height": 844})
+    expect(card(page, name)).to_be_visible()
+    assert page.evaluate("document.documentElement.scrollWidth") <= 390
     command(page, name, "History")
     expect(page.get_by_role("heading", name=name)).to_be_visible()
     changes = page.get_by_role("list", name="What changed")
     expect(changes.get_by_role("listitem")).to_contain_text(["removed"])
     expect(changes.get_by_role("img", name="Trajectory of line")).to_be_visible()
+    assert page.evaluate("document.documentElement.scrollWidth") <= 390
+    page.set_viewport_size({"width": 1280, "height": 800})
     page.get_by_label("from", exact=True).select_option("nothing")
     page.get_by_label("to", exact=True).select_option("revision 3")
     expect(changes.locator(":scope > li")).to_have_count(2)
@@ -214,32 +202,17 @@ def test_undo_of_a_new_language_does_not_take_back_what_others_did(
     assert library.client.get(place).json()["author"] == "Bo"
 
 
-def test_a_second_tab_sees_a_change_by_itself(open_page: OpenPage, library: Library) -> None:
-    watching = open_page(library.address, scene=False)
-    expect(watching.get_by_role("img", name="Trajectory of line")).to_be_visible()
-    library.client.delete(f"/api/v1/languages/{library.language}/gestures/line")
-    expect(watching.get_by_role("img", name="Trajectory of line")).to_have_count(0)
-
-
-@pytest.fixture
-def lose_race(open_page: OpenPage, library: Library) -> Callable[[], Page]:
-    """Return a function that relabels the line while somebody else edits its description."""
-
-    def lose_race() -> Page:
-        page = open_page(library.address, scene=False)
-        line = page.get_by_role("list", name="Gestures").get_by_role("listitem")
-        line.filter(has_text="line").hover()
-        page.get_by_role("button", name="Change line", exact=True).click()
-        expect(page.get_by_label("Label")).to_have_value("line")
-        change = {"description": "a long line"}
-        place = f"/api/v1/languages/{library.language}/gestures/line"
-        assert library.client.patch(place, json=change).status_code == 200
-        page.get_by_label("Label").fill("stroke")
-        page.get_by_role("button", name="Save", exact=True).click()
-        expect(page.get_by_role("dialog", name="Changed in two places")).to_be_visible()
-        return page
-
-    return lose_race
+def lose_race(page: Page, library: Library, description: str) -> None:
+    """Relabel the line while somebody else edits its description."""
+    line = page.get_by_role("list", name="Gestures").get_by_role("listitem")
+    line.filter(has_text="line").hover()
+    page.get_by_role("button", name="Change line", exact=True).click()
+    expect(page.get_by_label("Label")).to_have_value("line")
+    place = f"/api/v1/languages/{library.language}/gestures/line"
+    library.client.patch(place, json={"description": description}).raise_for_status()
+    page.get_by_label("Label").fill("stroke")
+    page.get_by_role("button", name="Save", exact=True).click()
+    expect(page.get_by_role("dialog", name="Changed in two places")).to_be_visible()
 
 
 def gestures(library: Library) -> dict[str, str]:
@@ -248,10 +221,11 @@ def gestures(library: Library) -> dict[str, str]:
     return {gesture["label"]: gesture["description"] for gesture in language["gestures"]}
 
 
-def test_a_lost_race_shows_both_versions_and_can_keep_both(
-    lose_race: Callable[[], Page], library: Library
+def test_of_a_lost_race_both_versions_are_shown_and_any_or_both_can_be_kept(
+    open_page: OpenPage, library: Library
 ) -> None:
-    page = lose_race()
+    page = open_page(library.address, scene=False)
+    lose_race(page, library, "a long line")
     theirs = page.get_by_role("region", name="Theirs, saved")
     expect(theirs).to_contain_text("line: description was empty, is “a long line”")
     expect(page.get_by_role("region", name="Yours, not saved yet")).to_contain_text("stroke")
@@ -262,26 +236,18 @@ def test_a_lost_race_shows_both_versions_and_can_keep_both(
     expect(page.get_by_role("img", name="Trajectory of line")).to_be_visible()
     assert gestures(library) == {"circle": "", "line": "a long line"}
 
-
-def test_of_a_lost_race_one_version_can_be_kept(
-    lose_race: Callable[[], Page], library: Library
-) -> None:
-    page = lose_race()
-    page.get_by_role("button", name="Keep yours").click()
-    expect(page.get_by_role("img", name="Trajectory of stroke")).to_be_visible()
-    assert gestures(library) == {"circle": "", "stroke": ""}
-
-
-def test_of_a_lost_race_theirs_can_be_kept_and_nothing_is_saved(
-    lose_race: Callable[[], Page], library: Library
-) -> None:
-    page = lose_race()
+    lose_race(page, library, "a longer line")
     page.get_by_role("button", name="Decide later").click()
     expect(page.get_by_role("alert")).to_contain_text("Nothing was saved")
     page.get_by_role("button", name="Save", exact=True).click()
     page.get_by_role("button", name="Keep theirs").click()
     expect(page.get_by_role("dialog")).to_have_count(0)
-    assert gestures(library) == {"circle": "", "line": "a long line"}
+    assert gestures(library) == {"circle": "", "line": "a longer line"}
+
+    lose_race(page, library, "the longest line")
+    page.get_by_role("button", name="Keep yours").click()
+    expect(page.get_by_role("img", name="Trajectory of stroke")).to_be_visible()
+    assert gestures(library) == {"circle": "", "stroke": "a longer line"}
 
 
 def test_the_tour_comes_once_and_again_when_asked_for(open_page: OpenPage) -> None:
@@ -314,17 +280,6 @@ def test_who_comes_by_a_link_is_not_shown_around(open_page: OpenPage, library: L
     page = open_page(library.address, scene=False, first_visit=True)
     expect(page.get_by_role("img", name="Trajectory of line")).to_be_visible()
     expect(page.locator(".tour")).to_have_count(0)
-
-
-def test_on_a_phone_cards_history_and_comparison_fit(
-    open_page: OpenPage, library: Library, name: str
-) -> None:
-    page = open_page({"view": "languages"}, scene=False, size=(390, 844))
-    expect(card(page, name)).to_be_visible()
-    assert page.evaluate("document.documentElement.scrollWidth") <= 390
-    command(page, name, "History")
-    expect(page.get_by_role("list", name="What changed").get_by_role("img")).to_have_count(1)
-    assert page.evaluate("document.documentElement.scrollWidth") <= 390
 
 
 def test_pictures_of_the_library(

@@ -10,7 +10,7 @@ import pytest
 from playwright.sync_api import Page, expect
 
 from tests.api.running import Running, client_of
-from tests.browser.accessibility import faults
+from tests.browser.accessibility import SCHEMES, faults
 from tests.browser.conftest import OpenPage
 from tests.browser.library import Library, library_of
 
@@ -178,17 +178,17 @@ def test_a_gesture_of_a_phrase_is_renamed_with_it_and_not_deleted(
     expect(page.locator(".phrase").first).to_contain_text("beckon")
 
 
-@pytest.mark.parametrize("scheme", ["dark", "light"])
 def test_the_open_form_is_accessible_and_fits_a_phone(
-    open_page: OpenPage, library: Library, scheme: str, picture: Callable[[Page, str], Path]
+    open_page: OpenPage, library: Library, picture: Callable[[Page, str], Path]
 ) -> None:
     query = {**sample(library), "phrase": "survey", "shown": "circle\nwedge\nthree"}
-    page = open_page(query, scene=False, scheme=scheme, size=(1280, 1000))
+    page = open_page(query, scene=False, size=(1280, 1000))
     expect(page.locator("#said")).to_contain_text("then circle or square")
     page.locator(".try-gesture img").last.evaluate("(image) => image.decode()")
-    assert faults(page) == []
-    if scheme == "dark":
-        picture(page, "phrases")
-    page.set_viewport_size({"width": 390, "height": 844})
-    assert page.evaluate("document.documentElement.scrollWidth") <= 390
-    assert faults(page) == []
+    picture(page, "phrases")
+    for width, height in ((1280, 1000), (390, 844)):
+        page.set_viewport_size({"width": width, "height": height})
+        assert page.evaluate("document.documentElement.scrollWidth") <= width
+        for scheme in SCHEMES:
+            page.emulate_media(color_scheme=scheme)
+            assert faults(page) == []

@@ -2,21 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-
-import pytest
 from playwright.sync_api import expect
 
-from tests.api.running import Running, client_of
+from tests.api.running import Running
 from tests.browser.accessibility import faults
 from tests.browser.conftest import OpenPage
-from tests.browser.library import Library, add_clip, library_of
-
-
-@pytest.fixture
-def library(server: Running, request: pytest.FixtureRequest) -> Iterator[Library]:
-    with client_of(server.address) as client:
-        yield library_of(server, client, request.node.name[:40])
+from tests.browser.library import Library, add_clip
 
 
 def test_takes_are_judged_and_counted_towards_acceptance(
@@ -40,6 +31,8 @@ def test_takes_are_judged_and_counted_towards_acceptance(
     show.click()
     expect(record).to_contain_text("1 error in 2 takes")
     assert faults(page) == []
+    page.set_viewport_size({"width": 390, "height": 844})
+    assert page.evaluate("document.documentElement.scrollWidth") <= 390
     record.get_by_text("2 takes", exact=True).click()
     record.get_by_role("button", name="Remove this take of circle").first.click()
     expect(record).to_contain_text("0 errors in 1 take")
@@ -67,10 +60,3 @@ def test_a_take_between_two_gestures_is_a_question_and_no_error(
     assert faults(page) == []
     record.get_by_role("link", name="my circle.mp4").click()
     expect(page.locator("#outcome.asked")).to_contain_text("circle or ring?, expected circle")
-
-
-def test_practice_fits_a_phone(open_page: OpenPage, library: Library) -> None:
-    query = {"view": "practice", "language": library.language}
-    page = open_page(query, scene=False, size=(390, 844))
-    expect(page.get_by_role("heading", name="Practice")).to_be_visible()
-    assert page.evaluate("document.documentElement.scrollWidth") <= 390

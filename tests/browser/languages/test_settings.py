@@ -2,21 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-
-import pytest
 from playwright.sync_api import expect
 
-from tests.api.running import Running, client_of
 from tests.browser.accessibility import faults
 from tests.browser.conftest import OpenPage
-from tests.browser.library import Library, library_of
-
-
-@pytest.fixture
-def library(server: Running) -> Iterator[Library]:
-    with client_of(server.address) as client:
-        yield library_of(server, client, "settings")
+from tests.browser.library import Library
 
 
 def test_profile_and_weights_are_changed_undone_and_reset(
@@ -53,11 +43,8 @@ def test_profile_and_weights_are_changed_undone_and_reset(
     saved = library.client.get(place).json()
     assert (saved["profile"], saved["tuning"]) == ("full", None)
 
-
-def test_the_settings_fit_a_phone(open_page: OpenPage, library: Library) -> None:
-    page = open_page(library.address, scene=False, size=(390, 560))
+    page.set_viewport_size({"width": 390, "height": 560})
     page.get_by_role("button", name="Settings", exact=True).click()
-    dialog = page.get_by_role("dialog", name="How this language is recognised")
     # The dialog is higher than the window, but its buttons are visible.
     assert dialog.evaluate("(each) => each.scrollHeight > each.clientHeight")
     expect(dialog.get_by_role("button", name="Save")).to_be_in_viewport(ratio=0.99)

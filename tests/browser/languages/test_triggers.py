@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+import httpx
 import pytest
 from playwright.sync_api import expect
 
@@ -66,25 +67,24 @@ def test_a_gesture_is_defined_and_recognised_between_two_poses(
 
 
 def test_one_gesture_begins_takes_and_another_one_ends_them(
-    open_page: OpenPage, server: Running
+    open_page: OpenPage, server: Running, client: httpx.Client
 ) -> None:
-    with client_of(server.address) as client:
-        library = library_of(server, client, "by gestures")
-        page = open_page(library.address, scene=False)
-        page.get_by_role("button", name="Change what begins and ends a take").click()
-        dialog = page.get_by_role("dialog", name="What begins and ends a gesture")
-        dialog.get_by_role("radio", name="A gesture of the language").check()
-        dialog.get_by_label("Gesture that begins a take").select_option("line")
-        dialog.get_by_label("Gesture that ends a take").select_option("circle")
-        assert faults(page) == []
-        dialog.get_by_role("button", name="Save").click()
-        expect(dialog).to_be_hidden()
-        expect(page.get_by_text("between the gestures 'line' and 'circle'").first).to_be_visible()
-        page.get_by_role("button", name="Change what begins and ends a take").click()
-        expect(dialog.get_by_label("Gesture that begins a take")).to_have_value("line")
-        expect(dialog.get_by_label("Gesture that ends a take")).to_have_value("circle")
-        expect(dialog.get_by_role("radio", name="A gesture of the language")).to_be_checked()
-        # Another gesture at the end is a change by itself.
-        expect(dialog.get_by_role("button", name="Save")).to_be_disabled()
-        dialog.get_by_label("Gesture that ends a take").select_option("the same")
-        expect(dialog.get_by_role("button", name="Save")).to_be_enabled()
+    library = library_of(server, client, "by gestures")
+    page = open_page(library.address, scene=False)
+    page.get_by_role("button", name="Change what begins and ends a take").click()
+    dialog = page.get_by_role("dialog", name="What begins and ends a gesture")
+    dialog.get_by_role("radio", name="A gesture of the language").check()
+    dialog.get_by_label("Gesture that begins a take").select_option("line")
+    dialog.get_by_label("Gesture that ends a take").select_option("circle")
+    assert faults(page) == []
+    dialog.get_by_role("button", name="Save").click()
+    expect(dialog).to_be_hidden()
+    expect(page.get_by_text("between the gestures 'line' and 'circle'").first).to_be_visible()
+    page.get_by_role("button", name="Change what begins and ends a take").click()
+    expect(dialog.get_by_label("Gesture that begins a take")).to_have_value("line")
+    expect(dialog.get_by_label("Gesture that ends a take")).to_have_value("circle")
+    expect(dialog.get_by_role("radio", name="A gesture of the language")).to_be_checked()
+    # Another gesture at the end is a change by itself.
+    expect(dialog.get_by_role("button", name="Save")).to_be_disabled()
+    dialog.get_by_label("Gesture that ends a take").select_option("the same")
+    expect(dialog.get_by_role("button", name="Save")).to_be_enabled()

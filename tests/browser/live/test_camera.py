@@ -49,6 +49,8 @@ def test_a_camera_is_denied_then_allowed_and_lost_in_the_middle(
         server.studio.clips.delete(each.clip.id)
 
 
+MIRRORED = "matrix(-1, 0, 0, 1, 0, 0)"
+
 BUSY = """
 const real = MediaDevices.prototype.getUserMedia;
 MediaDevices.prototype.getUserMedia = function (wanted) {
@@ -61,7 +63,18 @@ window.cameraIsBusy = true;
 device, so this error is simulated; the page's handling of it is real."""
 
 
-def test_a_camera_that_another_program_holds_is_told_and_tried_again(open_page: OpenPage) -> None:
+REAR = """() => {
+  const settings = MediaStreamTrack.prototype.getSettings;
+  MediaStreamTrack.prototype.getSettings = function () {
+    return { ...settings.call(this), facingMode: "environment" };
+  };
+}"""
+"""A phone's settings of its rear camera; Chromium's fake device does not report its direction."""
+
+
+def test_a_camera_that_another_program_holds_is_tried_again_and_a_mirror_unless_a_rear_one(
+    open_page: OpenPage,
+) -> None:
     page = open_page({"view": "live"}, scene=False)
     page.context.grant_permissions(["camera"])
     page.evaluate(BUSY)
@@ -73,31 +86,20 @@ def test_a_camera_that_another_program_holds_is_told_and_tried_again(open_page: 
     page.evaluate("window.cameraIsBusy = false")
     problem.get_by_role("button", name="Try again").click()
     expect(problem).to_be_hidden()
-    expect(page.get_by_role("button", name="Stop", exact=True)).to_be_visible()
-
-
-REAR = """() => {
-  const settings = MediaStreamTrack.prototype.getSettings;
-  MediaStreamTrack.prototype.getSettings = function () {
-    return { ...settings.call(this), facingMode: "environment" };
-  };
-}"""
-"""A phone's settings of its rear camera; Chromium's fake device does not report its direction."""
-
-
-@pytest.mark.parametrize("view", ["live", "practice"])
-def test_a_camera_is_a_mirror_unless_it_is_a_phones_rear_one(
-    open_page: OpenPage, view: str
-) -> None:
-    page = open_page({"view": view}, scene=False)
-    page.context.grant_permissions(["camera"])
-    if view == "practice":
-        page.get_by_label("Diver").fill("Ana")
+    stop = page.get_by_role("button", name=re.compile("^Stop"))
     video = page.locator(".camera-picture video:visible")
+    expect(video).to_have_css("transform", MIRRORED)
+    stop.click()
+
+    page.get_by_role("link", name="Practice").click()
+    page.get_by_label("Diver").fill("Ana")
     page.get_by_role("button", name="Start the camera").click()
-    expect(video).to_have_css("transform", "matrix(-1, 0, 0, 1, 0, 0)")
-    page.get_by_role("button", name=re.compile("^Stop")).click()
+    expect(video).to_have_css("transform", MIRRORED)
+    stop.click()
     page.evaluate(REAR)
-    page.get_by_role("button", name="Start the camera").click()
-    expect(page.locator(".camera-picture .skeleton:visible")).to_be_attached()
-    expect(video).to_have_css("transform", "none")
+    for view in ("Practice", "Live"):
+        page.get_by_role("link", name=view).click()
+        page.get_by_role("button", name="Start the camera").click()
+        expect(page.locator(".camera-picture .skeleton:visible")).to_be_attached()
+        expect(video).to_have_css("transform", "none")
+        stop.click()

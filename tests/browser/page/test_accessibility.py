@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Literal
 
+import httpx
 import pytest
-from playwright.sync_api import Page, expect
+from playwright.sync_api import Page, ViewportSize, expect
 
 from tests.api.running import Running, client_of
-from tests.browser.accessibility import faults
+from tests.browser.accessibility import SCHEMES, faults
 from tests.browser.conftest import OpenPage
 from tests.browser.library import Library, add_clip, library_of
 
@@ -46,35 +46,28 @@ def library(server: Running) -> Iterator[Library]:
         yield library_of(server, client, "accessible")
 
 
-SCHEMES: tuple[Literal["dark", "light"], ...] = ("dark", "light")
+DESK, PHONE = ViewportSize(width=1280, height=800), ViewportSize(width=390, height=844)
 
 
-def test_a_recognition_with_its_reasons(open_page: OpenPage, library: Library) -> None:
+def test_every_distance_of_a_recognition_with_its_reasons_is_legible(
+    open_page: OpenPage, server: Running, client: httpx.Client
+) -> None:
+    library = library_of(server, client, "distances")
+    # The fainter a cell, the farther the gesture: half-way cells had too little contrast.
+    for shape in ("circle backwards", "corner"):
+        library.add_gesture(shape, add_clip(server, shape, name=f"{shape}.mp4"))
     query = {**library.address, "recognition": library.recognise("line")}
-    page = open_page(query, scene=False)
+    page = open_page(query, scene=False, size=(1440, 900))
     expect(page.get_by_role("region", name="Why")).to_contain_text("'line'")
+    page.get_by_role("button", name="Show the comparisons without weight").click()
+    expect(page.locator("#stroke-over")).to_be_visible()
     assert page.evaluate(ESCAPING) == []
     for scheme in SCHEMES:
         page.emulate_media(color_scheme=scheme)
-        assert faults(page) == []
-
-
-def test_every_distance_of_the_table_is_legible(open_page: OpenPage, server: Running) -> None:
-    with client_of(server.address) as client:
-        library = library_of(server, client, "distances")
-        # The fainter a cell, the farther the gesture: half-way cells had too little contrast.
-        for shape in ("circle backwards", "corner"):
-            library.add_gesture(shape, add_clip(server, shape, name=f"{shape}.mp4"))
-        query = {**library.address, "recognition": library.recognise("line")}
-        page = open_page(query, scene=False, size=(1440, 900))
-        page.get_by_role("button", name="Show the comparisons without weight").click()
-        expect(page.locator("#stroke-over")).to_be_visible()
-        for scheme in SCHEMES:
-            page.emulate_media(color_scheme=scheme)
-            check_distances(page)
-        page.emulate_media(color_scheme="dark")
-        page.get_by_role("button", name="Readable in the sun").click()
         check_distances(page)
+    page.emulate_media(color_scheme="dark")
+    page.get_by_role("button", name="Readable in the sun").click()
+    check_distances(page)
 
 
 def check_distances(page: Page) -> None:
@@ -85,19 +78,24 @@ def check_distances(page: Page) -> None:
     assert faults(page) == []
 
 
-def test_every_view(open_page: OpenPage, library: Library) -> None:
+def test_every_view_at_a_desk_and_on_a_phone(open_page: OpenPage, library: Library) -> None:
     page = open_page(library.address, scene=False)
     links = page.get_by_role("navigation", name="Views").get_by_role("link")
     expect(links).to_have_text(list(SHOWN))
-    found = {}
+    found, widths = {}, {}
     for name, content in SHOWN.items():
+        page.set_viewport_size(DESK)
         links.get_by_text(name, exact=True).click()
         expect(page.locator(".view:visible").locator(content)).to_be_visible()
         found[name] = page.evaluate(ESCAPING)
         for scheme in SCHEMES:
             page.emulate_media(color_scheme=scheme)
             found[name] += faults(page)
+        page.set_viewport_size(PHONE)
+        found[name] += faults(page)
+        widths[name] = page.evaluate("document.documentElement.scrollWidth")
     assert found == {name: [] for name in SHOWN}
+    assert max(widths.values()) <= PHONE["width"], widths
 
 
 def test_the_header_stays_while_clips_are_chosen_for_the_test_set(
@@ -117,19 +115,6 @@ def test_the_header_stays_while_clips_are_chosen_for_the_test_set(
         assert page.evaluate("[scrollY, document.documentElement.scrollHeight]") == [0, 700]
 
 
-def test_every_view_on_a_phone(open_page: OpenPage, library: Library) -> None:
-    page = open_page(library.address, scene=False, size=(390, 844))
-    links = page.get_by_role("navigation", name="Views").get_by_role("link")
-    found, widths = {}, {}
-    for name, content in SHOWN.items():
-        links.get_by_text(name, exact=True).click()
-        expect(page.locator(".view:visible").locator(content)).to_be_visible()
-        found[name] = faults(page)
-        widths[name] = page.evaluate("document.documentElement.scrollWidth")
-    assert found == {name: [] for name in SHOWN}
-    assert max(widths.values()) <= 390, widths
-
-
 @pytest.mark.parametrize(
     ("query", "content"),
     [
@@ -141,20 +126,28 @@ def test_what_the_views_lead_to(
     open_page: OpenPage, library: Library, query: dict[str, str], content: str
 ) -> None:
     page = open_page({"language": library.language, **query}, scene=False)
-    for width, height in ((1280, 800), (390, 844)):
-        page.set_viewport_size({"width": width, "height": height})
+    for size in (DESK, PHONE):
+        page.set_viewport_size(size)
         expect(page.locator(".view:visible").locator(content)).to_be_visible()
         assert faults(page) == []
         assert page.evaluate(ESCAPING) == []
-        assert page.evaluate("document.documentElement.scrollWidth") <= width
+        assert page.evaluate("document.documentElement.scrollWidth") <= size["width"]
 
 
-def test_the_dialogues(open_page: OpenPage, library: Library) -> None:
+def test_the_list_of_all_keys_and_the_export(open_page: OpenPage, library: Library) -> None:
     page = open_page(library.address, scene=False)
+    expect(page.get_by_role("link", name="Studio", exact=True)).to_have_attribute(
+        "aria-current", "page"
+    )
     page.keyboard.press("?")
-    expect(page.get_by_role("dialog")).to_be_visible()
+    listed = page.get_by_role("dialog", name="Keys")
+    expect(listed.get_by_text("Undo", exact=True)).to_be_visible()
+    # Also the keys of views not opened yet.
+    for group in ("Playback", "Editing a gesture", "Two gestures side by side", "Live"):
+        expect(listed.get_by_role("heading", name=group, exact=True)).to_be_visible()
     check_sizes(page)
     page.keyboard.press("Escape")
+    expect(listed).to_be_hidden()
     page.get_by_role("button", name="Export").click()
     export = page.get_by_role("dialog", name="Export")
     export.get_by_text("What the robot needs").click()
@@ -164,6 +157,6 @@ def test_the_dialogues(open_page: OpenPage, library: Library) -> None:
 
 def check_sizes(page: Page) -> None:
     """Check what is open at the width of a phone and of a screen."""
-    for width, height in ((390, 844), (1440, 900)):
-        page.set_viewport_size({"width": width, "height": height})
+    for size in (PHONE, DESK):
+        page.set_viewport_size(size)
         assert faults(page) == []

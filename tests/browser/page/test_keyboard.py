@@ -29,9 +29,10 @@ def library(server: Running) -> Iterator[Library]:
 def reach(page: Page, wanted: Locator, *, shown: Locator | None = None) -> None:
     """Press Tab until an element has the focus; it, or its visible part `shown`, must be seen."""
     expect(wanted).to_have_count(1)
+    element = wanted.element_handle()
     for _ in range(MOST_TABS):
         page.keyboard.press("Tab")
-        if wanted.evaluate("element => element === document.activeElement"):
+        if element.evaluate("element => element === document.activeElement"):
             expect(shown or wanted).to_be_in_viewport()
             return
     raise AssertionError(f"Tab does not reach {wanted}")

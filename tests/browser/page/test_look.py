@@ -4,13 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from itertools import combinations
-from urllib.parse import urlencode
 
 import pytest
-from playwright.sync_api import Browser, Page, expect
+from playwright.sync_api import Page, expect
 
 from tests.api.running import Running, client_of
-from tests.browser.conftest import WITHOUT_SCENE, OpenPage
+from tests.browser.conftest import OpenPage
 from tests.browser.library import Library, add_clip, library_of
 
 
@@ -22,7 +21,7 @@ def library(server: Running) -> Iterator[Library]:
 
 def test_everything_is_in_reach_on_a_phone(open_page: OpenPage, library: Library) -> None:
     query = {**library.address, "recognition": library.recognise("circle")}
-    page = open_page(query, size=(390, 844))
+    page = open_page(query, size=(390, 844), scene=False)
     expect(page.get_by_role("button", name="Play", exact=True)).to_be_visible()
     assert page.evaluate("document.documentElement.scrollWidth") <= 390
     for name in ("Record with the camera", "Save as gesture", "Recognise", "New language"):
@@ -43,9 +42,17 @@ def test_everything_is_in_reach_on_a_phone(open_page: OpenPage, library: Library
     assert page.evaluate("document.documentElement.scrollWidth") <= 390
 
 
-def test_the_bar_has_room_for_everything_on_a_tablet(open_page: OpenPage, library: Library) -> None:
+def test_at_a_desk_one_button_stands_out_all_have_names_and_the_bar_has_room_for_them(
+    open_page: OpenPage, server: Running, library: Library
+) -> None:
+    add_clip(server, "line", name="unused one.mp4")
+    add_clip(server, "line", name="unused two.mp4")
     page = open_page(library.address, scene=False)
     expect(page.get_by_role("button", name="Export")).to_be_enabled()
+    expect(page.get_by_role("button", name="Recognise", exact=True)).to_be_enabled()
+    expect(page.locator("button.primary:visible")).to_have_text(["Recognise"])
+    check_names_and_focus(page)
+    # On a tablet too.
     for width in (768, 1024, 1180, 1280):
         page.set_viewport_size({"width": width, "height": 800})
         check_bar(page, width)
@@ -66,73 +73,6 @@ def check_bar(page: Page, width: int) -> None:
         assert is_beside or down <= max(one["y"], other["y"]) + 1
 
 
-SMALL = """() => [...document.querySelectorAll("button, select, summary, input")]
-  .filter((e) => e.checkVisibility() && !e.closest("table"))
-  .filter((e) => !e.matches(".take, .handle, .visually-hidden, [type=checkbox], [type=radio]"))
-  .filter((e) => e.getBoundingClientRect().height < 44)
-  .map((e) => e.outerHTML.slice(0, 120))"""
-"""Controls that are less than 44 px high."""
-
-
-def test_on_a_phone_the_answer_follows_the_picture_and_thumbs_find_every_control(
-    browser: Browser, server: Running, library: Library
-) -> None:
-    query = {**library.address, "recognition": library.recognise("line")}
-    context = browser.new_context(
-        viewport={"width": 390, "height": 844}, has_touch=True, is_mobile=True
-    )
-    context.add_cookies([{"name": WITHOUT_SCENE, "value": "1", "url": server.address}])
-    context.add_init_script("localStorage.setItem('osg-studio.tour', 'seen')")
-    page = context.new_page()
-    page.goto(f"{server.address}/?{urlencode(query)}")
-    sentence = page.locator(".why-sentence")
-    expect(sentence).to_be_visible()
-    expect(page.get_by_role("img", name="Trajectory image: this take")).to_be_visible()
-    places = [
-        page.locator(part).first.bounding_box()
-        for part in (
-            "#lab-box",
-            "#outcome",
-            ".why-sentence",
-            "#timeline",
-            ".vote-images",
-            ".vote-table",
-        )
-    ]
-    tops = [place["y"] for place in places if place is not None]
-    assert len(tops) == len(places)
-    assert tops == sorted(tops)
-    assert page.evaluate("document.documentElement.scrollWidth") <= 390
-    assert page.evaluate(SMALL) == []
-    page.get_by_role("button", name="New language").click()
-    dialog = page.get_by_role("dialog", name="New language")
-    expect(dialog).to_be_visible()
-    assert dialog.evaluate("(box) => box.scrollWidth <= box.clientWidth")
-    context.close()
-
-
-def test_names_of_many_takes_are_not_cut_on_the_timeline(
-    open_page: OpenPage, server: Running, library: Library
-) -> None:
-    clip = add_clip(server, *["circle"] * 17, name="long dive.mp4")
-    page = open_page({"clip": clip, "language": library.language}, scene=False, size=(1024, 768))
-    names = page.locator(".take-name")
-    expect(names).to_have_count(17)
-    cut = "(each) => each.filter((e) => e.offsetWidth > e.parentElement.clientWidth).length"
-    assert names.evaluate_all(cut) == 0
-    expect(page.get_by_role("button", name="Take 17,")).to_be_visible()
-
-
-def test_one_button_of_a_screen_stands_out(
-    open_page: OpenPage, server: Running, library: Library
-) -> None:
-    add_clip(server, "line", name="unused one.mp4")
-    add_clip(server, "line", name="unused two.mp4")
-    page = open_page(library.address, scene=False)
-    expect(page.get_by_role("button", name="Recognise", exact=True)).to_be_enabled()
-    expect(page.locator("button.primary:visible")).to_have_text(["Recognise"])
-
-
 COVERED = """(box) => {
   const { left, right, top, bottom } = box.getBoundingClientRect();
   const seen = Math.min(bottom, innerHeight);
@@ -144,20 +84,25 @@ COVERED = """(box) => {
 """The covered points among the corners and the middle of the visible part of a box."""
 
 
-@pytest.mark.parametrize("look", ["", "sun"])
 def test_the_picture_of_a_chosen_clip_is_in_sight_on_a_phone(
-    open_page: OpenPage, server: Running, library: Library, look: str
+    open_page: OpenPage, server: Running, library: Library
 ) -> None:
     # Enough clips to show the search, of another aspect ratio than the one on display.
     for number in range(5):
-        add_clip(server, "line", name=f"{look} dive {number}.mp4")
+        add_clip(server, "line", name=f"dive {number}.mp4")
     page = open_page(library.address, size=(390, 844), scene=False)
-    if look:
-        page.keyboard.press("Shift+L")
+    check_picture(page, "dive 2.mp4")
+    page.keyboard.press("Shift+L")
+    expect(page.locator("html")).to_have_attribute("data-look", "sun")
+    check_picture(page, "dive 3.mp4")
+
+
+def check_picture(page: Page, clip: str) -> None:
+    """Choose a clip, and check that its picture is in sight and its timeline below it."""
     expect(page.get_by_role("button", name="Read all takes")).to_be_visible()
     expect(page.get_by_label("Find clips")).to_be_visible()
-    page.get_by_role("button", name=f"Show {look} dive 2.mp4").click()
-    expect(page.get_by_role("heading", name=f"{look} dive 2.mp4")).to_be_in_viewport()
+    page.get_by_role("button", name=f"Show {clip}").click()
+    expect(page.get_by_role("heading", name=clip)).to_be_in_viewport()
     picture = page.locator("#lab-box")
     box = picture.bounding_box()
     assert box is not None
@@ -188,11 +133,8 @@ def test_colours_follow_the_system_in_the_page_and_in_the_frame(
         expect(body).not_to_have_css("background-color", colour)
 
 
-def test_every_control_has_a_name_and_shows_the_focus(
-    open_page: OpenPage, library: Library
-) -> None:
-    page = open_page(library.address, scene=False)
-    expect(page.get_by_role("button", name="Recognise")).to_be_enabled()
+def check_names_and_focus(page: Page) -> None:
+    """Check that every control has a name and shows the focus."""
     nameless = page.evaluate(
         """() => [...document.querySelectorAll("button, select, input, a, summary, iframe, img")]
           .filter((e) => e.checkVisibility() && !(e.tagName === "IMG" && e.alt === ""))

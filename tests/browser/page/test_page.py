@@ -3,37 +3,25 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
 from pathlib import Path
 
-import httpx
 import pytest
 from playwright.sync_api import Page, Route, expect
 
-from tests.api.running import Running, client_of
+from app.recognition.language.file import short_code
+from tests.api.running import Running
 from tests.browser.conftest import OpenPage
 from tests.browser.files import drop
-from tests.browser.library import Library, add_clip, library_of
+from tests.browser.library import Library, add_clip
 from tests.recognition.damaged_clips import write_clip
 
 MARKUP = '<img src=x onerror="window.broken=1">'
 
 
-@pytest.fixture
-def client(server: Running) -> Iterator[httpx.Client]:
-    with client_of(server.address) as client:
-        yield client
-
-
-@pytest.fixture
-def library(server: Running, client: httpx.Client, request: pytest.FixtureRequest) -> Library:
-    return library_of(server, client, request.node.name[:40])
-
-
 def workspace_of(page: Page) -> str:
     """Return the address of the tab's workspace, as soon as it has one."""
     frame = page.locator("#lab")
-    expect(frame).to_have_attribute("src", re.compile(r"^viser/\w"))
+    expect(frame).to_have_attribute("src", re.compile(r"^viser/[\w-]"))
     return str(frame.get_attribute("src"))
 
 
@@ -50,10 +38,11 @@ def test_a_key_pressed_right_after_a_tab_counts_and_a_missing_camera_is_explaine
     expect(page.get_by_role("link", name="Live")).to_be_focused()
 
 
-def test_a_link_shows_the_same_and_a_reload_keeps_the_workspace(
+def test_a_link_shows_the_same_with_its_images_and_a_reload_keeps_the_workspace(
     open_page: OpenPage, library: Library
 ) -> None:
-    page = open_page({**library.address, "recognition": library.recognise("line")})
+    query = {**library.address, "recognition": library.recognise("line")}
+    page = open_page(query, scene=False)
     outcome = page.locator("#outcome")
     expect(outcome).to_contain_text("Recognised as circle, expected line")
     expect(page.get_by_role("table", name="Votes")).to_be_visible()
@@ -61,10 +50,32 @@ def test_a_link_shows_the_same_and_a_reload_keeps_the_workspace(
     expect(page.get_by_role("button", name=re.compile("^Take 1"))).to_have_attribute(
         "aria-pressed", "true"
     )
+    check_start_and_direction(page)
     workspace = workspace_of(page)
     page.reload()
     expect(outcome).to_contain_text("Recognised as circle, expected line")
     assert workspace_of(page) == workspace
+
+
+def check_start_and_direction(page: Page) -> None:
+    """Check that cards and compared images show where a movement begins and leads to."""
+    for name in ("Trajectory of circle, from the dot along the arrow", "Trajectory image: this"):
+        image = page.get_by_role("img", name=name)
+        expect(image).to_be_visible()
+        coloured = image.evaluate(
+            """async (image) => {
+              await image.decode();
+              const canvas = document.createElement("canvas");
+              [canvas.width, canvas.height] = [image.naturalWidth, image.naturalHeight];
+              const context = canvas.getContext("2d");
+              context.drawImage(image, 0, 0);
+              const { data } = context.getImageData(0, 0, canvas.width, canvas.height);
+              let count = 0;
+              for (let i = 0; i < data.length; i += 4) count += data[i + 2] > data[i] + 60;
+              return count;
+            }"""
+        )
+        assert coloured > 100
 
 
 def test_a_link_is_copied_and_says_when_what_it_shows_is_gone(
@@ -105,8 +116,8 @@ def test_a_link_is_copied_and_says_when_what_it_shows_is_gone(
 def test_two_tabs_are_two_workspaces_and_hear_of_each_others_changes(
     open_page: OpenPage, library: Library
 ) -> None:
-    first = open_page({**library.address, "recognition": library.recognise()})
-    second = open_page(library.address)
+    query = {**library.address, "recognition": library.recognise()}
+    first, second = open_page(query, scene=False), open_page(library.address, scene=False)
     expect(first.get_by_role("table", name="Votes")).to_be_visible()
     expect(second.get_by_text("No decision yet")).to_be_visible()
     card = second.get_by_role("list", name="Gestures").get_by_role("listitem").nth(1)
@@ -130,36 +141,16 @@ def test_a_duplicated_tab_gets_a_workspace_of_its_own(open_page: OpenPage) -> No
     assert workspace_of(first) == workspace
 
 
-def test_cards_and_compared_images_show_start_and_direction(
-    open_page: OpenPage, library: Library
-) -> None:
-    query = {**library.address, "recognition": library.recognise("circle")}
-    page = open_page(query, scene=False)
-    for name in ("Trajectory of circle, from the dot along the arrow", "Trajectory image: this"):
-        image = page.get_by_role("img", name=name)
-        expect(image).to_be_visible()
-        coloured = image.evaluate(
-            """async (image) => {
-              await image.decode();
-              const canvas = document.createElement("canvas");
-              [canvas.width, canvas.height] = [image.naturalWidth, image.naturalHeight];
-              const context = canvas.getContext("2d");
-              context.drawImage(image, 0, 0);
-              const { data } = context.getImageData(0, 0, canvas.width, canvas.height);
-              let count = 0;
-              for (let i = 0; i < data.length; i += 4) count += data[i + 2] > data[i] + 60;
-              return count;
-            }"""
-        )
-        assert coloured > 100
-
-
-def test_the_slate_for_divers_is_fetched_as_a_pdf_and_an_svg(
+def test_the_slate_is_fetched_as_a_pdf_and_an_svg_beside_the_code_that_a_robot_shows(
     open_page: OpenPage, library: Library, tmp_path: Path
 ) -> None:
     page = open_page(library.address, scene=False)
+    exported = library.client.get(f"/api/v1/languages/{library.language}/export").json()
+    code = short_code(exported["sha256"])
+    expect(page.locator("#carried")).to_contain_text(f"A robot that has revision 3 shows {code}")
     page.get_by_role("button", name="Export").click()
     dialog = page.get_by_role("dialog", name="Export")
+    expect(dialog).to_contain_text(f"code {code}")
     files = {}
     for kind in ("PDF", "SVG"):
         with page.expect_download() as download:
@@ -258,10 +249,8 @@ def test_a_label_that_is_taken_is_refused_in_the_editor(
 
 
 def test_a_range_can_be_chosen_by_hand_with_the_keyboard(
-    open_page: OpenPage, server: Running, library: Library
+    open_page: OpenPage, library: Library
 ) -> None:
-    page = open_page({"clip": add_clip(server, name="no salute.mp4")}, scene=False)
-    expect(page.get_by_text("No Vulcan salute was found")).to_be_visible()
     page = open_page(library.address, scene=False)
     start = page.get_by_role("slider", name="Start of the range")
     (take,) = library.client.get(f"/api/v1/clips/{library.clip}/takes").json()
@@ -277,9 +266,10 @@ def test_a_range_can_be_chosen_by_hand_with_the_keyboard(
     expect(page.get_by_text("Take 1 of 1")).to_be_visible()
 
 
-def test_what_is_expected_is_proposed_by_the_clips_name_and_forgotten_with_it(
+def test_what_is_expected_is_proposed_by_the_clips_name_forgotten_with_it_and_waits_for_takes(
     open_page: OpenPage, server: Running, library: Library
 ) -> None:
+    add_clip(server, "line", name="late.mp4")
     add_clip(server, "line", name="line-test-1.mp4")
     page = open_page(library.address, scene=False)
     expected = page.get_by_label("Expected", exact=True)
@@ -294,6 +284,19 @@ def test_what_is_expected_is_proposed_by_the_clips_name_and_forgotten_with_it(
     page.get_by_role("button", name=re.compile(r"^Show test_what.*(?<!line)\.mp4")).click()
     expect(expected).to_have_value("")
     expect(outcome).to_be_empty()
+
+    # Nothing acts on another clip before its own takes are there.
+    expect(page.get_by_text("Take 1 of 1")).to_be_visible()
+    held: list[Route] = []
+    page.route("**/takes", lambda route: held.append(route))
+    page.get_by_role("button", name="Show late.mp4").click()
+    recognise = page.get_by_role("button", name="Recognise")
+    expect(recognise).to_be_disabled()
+    expect(page.get_by_role("button", name="Save as gesture")).to_be_disabled()
+    while not held:
+        page.wait_for_timeout(10)
+    held[0].continue_()
+    expect(recognise).to_be_enabled()
 
 
 def test_what_is_expected_is_proposed_once_the_language_is_there(
@@ -316,24 +319,6 @@ def test_what_is_expected_is_proposed_once_the_language_is_there(
     expect(page.get_by_label("Expected", exact=True)).to_have_value("line")
 
 
-def test_nothing_acts_on_another_clip_before_its_own_takes_are_there(
-    open_page: OpenPage, server: Running, library: Library
-) -> None:
-    add_clip(server, "line", name="late.mp4")
-    page = open_page(library.address, scene=False)
-    expect(page.get_by_text("Take 1 of 1")).to_be_visible()
-    held: list[Route] = []
-    page.route("**/takes", lambda route: held.append(route))
-    page.get_by_role("button", name="Show late.mp4").click()
-    recognise = page.get_by_role("button", name="Recognise")
-    expect(recognise).to_be_disabled()
-    expect(page.get_by_role("button", name="Save as gesture")).to_be_disabled()
-    while not held:
-        page.wait_for_timeout(10)
-    held[0].continue_()
-    expect(recognise).to_be_enabled()
-
-
 @pytest.mark.withstands(row="H15")
 def test_names_with_markup_are_text_everywhere(
     open_page: OpenPage, server: Running, library: Library
@@ -350,23 +335,7 @@ def test_names_with_markup_are_text_everywhere(
         assert frame.locator("img[src=x]").count() == 0
 
 
-def test_a_dropped_language_file_is_imported_and_a_broken_one_explained(
-    open_page: OpenPage, library: Library, tmp_path: Path
-) -> None:
-    exported = library.client.get(f"/api/v1/languages/{library.language}/export").content
-    good, bad = tmp_path / "good.json", tmp_path / "bad.json"
-    good.write_bytes(exported)
-    bad.write_text('{"format": "osg-studio/gesture-language", "version": 99}')
-    page = open_page(scene=False)
-    drop(page, good)
-    expect(page.get_by_text("Language imported")).to_be_visible()
-    expect(page.get_by_role("list", name="Gestures").get_by_role("listitem")).to_have_count(2)
-    drop(page, bad)
-    problem = page.get_by_role("alert").filter(has_text="Importing bad.json failed")
-    expect(problem).to_contain_text("99")
-
-
-def test_of_several_dropped_clips_all_are_added_and_the_first_is_shown(
+def test_dropped_clips_are_added_and_the_first_is_shown_but_broken_files_are_explained(
     open_page: OpenPage, tmp_path: Path
 ) -> None:
     names = ("one.mp4", "two.mp4", "three.mp4")
@@ -378,14 +347,13 @@ def test_of_several_dropped_clips_all_are_added_and_the_first_is_shown(
     expect(page.get_by_role("button", name="Show one.mp4")).to_have_attribute(
         "aria-pressed", "true"
     )
-
-
-def test_a_file_that_is_no_video_is_refused_with_the_reason(
-    open_page: OpenPage, tmp_path: Path
-) -> None:
+    bad = tmp_path / "bad.json"
+    bad.write_text('{"format": "osg-studio/gesture-language", "version": 99}')
+    drop(page, bad)
+    problem = page.get_by_role("alert").filter(has_text="Importing bad.json failed")
+    expect(problem).to_contain_text("99")
     fake = tmp_path / "holiday.mp4"
     fake.write_text("<script>window.broken = 1</script>")
-    page = open_page(scene=False)
     drop(page, fake)
     item = page.get_by_role("list", name="Uploads").get_by_role("listitem")
     expect(item.get_by_role("button", name="Retry holiday.mp4")).to_be_visible()

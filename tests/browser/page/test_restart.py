@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import pytest
-from playwright.sync_api import Page, Request, expect
+from playwright.sync_api import BrowserContext, Page, Request, expect
 
 from app.settings import Settings
 from tests.api.running import client_of, running, until
@@ -33,6 +33,15 @@ class Address:
 def server() -> Address:
     """Return the place that `open_page` opens."""
     return Address()
+
+
+@pytest.fixture(scope="module", autouse=True)
+def without_scene(shared_context: BrowserContext) -> None:
+    """Give pages an empty frame in place of viser's: the server's own process draws all of it."""
+    empty = "<div id=root><canvas></canvas></div>"
+    shared_context.route(
+        "**/viser/**", lambda route: route.fulfill(body=empty, content_type="text/html")
+    )
 
 
 @pytest.fixture

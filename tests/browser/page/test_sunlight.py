@@ -2,15 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-
-import pytest
 from playwright.sync_api import expect
 
-from tests.api.running import Running, client_of
 from tests.browser.accessibility import faults
 from tests.browser.conftest import OpenPage
-from tests.browser.library import Library, library_of
+from tests.browser.library import Library
 
 SMALL = """() => [...document.querySelectorAll("button, select, summary, a.button")]
   .filter((each) => each.checkVisibility() && !each.closest("#transport, .timeline"))
@@ -29,19 +25,8 @@ COVERED = """() => [...document.querySelectorAll(".bar :is(button, select, .bran
 """Controls of the bar that are covered or outside the window."""
 
 
-@pytest.fixture
-def library(server: Running) -> Iterator[Library]:
-    with client_of(server.address) as client:
-        yield library_of(server, client, "sunny")
-
-
-@pytest.mark.parametrize("size", [(1280, 800), (390, 844)])
-def test_targets_are_large_and_contrast_is_high(
-    open_page: OpenPage,
-    library: Library,
-    size: tuple[int, int],
-) -> None:
-    page = open_page(library.address, scene=False, size=size)
+def test_targets_are_large_and_contrast_is_high(open_page: OpenPage, library: Library) -> None:
+    page = open_page(library.address, scene=False)
     button = page.get_by_role("button", name="Readable in the sun")
     button.click()
     expect(button).to_have_attribute("aria-pressed", "true")
@@ -50,9 +35,11 @@ def test_targets_are_large_and_contrast_is_high(
     expect(page.get_by_role("button", name="1 demonstration of circle")).to_be_visible()
     expect(page.locator("body")).to_have_css("background-color", "rgb(255, 255, 255)")
     expect(page.locator("#timeline")).to_be_visible()
-    assert page.evaluate(SMALL) == []
-    assert page.evaluate(COVERED) == []
-    assert faults(page) == []
-    assert page.evaluate("document.documentElement.scrollWidth") <= size[0]
+    for width, height in ((1280, 800), (390, 844)):
+        page.set_viewport_size({"width": width, "height": height})
+        assert page.evaluate(SMALL) == []
+        assert page.evaluate(COVERED) == []
+        assert faults(page) == []
+        assert page.evaluate("document.documentElement.scrollWidth") <= width
     page.keyboard.press("Shift+L")
     expect(button).to_have_attribute("aria-pressed", "false")

@@ -11,13 +11,14 @@ from tests.api.running import Running, client_of
 from tests.browser.conftest import WITHOUT_SCENE, new_context
 from tests.browser.library import Library, library_of
 
-PHONE, TABLET = (390, 844), (1024, 768)
+PHONE, TABLET = ViewportSize(width=390, height=844), ViewportSize(width=1024, height=768)
 
 LEAST = 44
 """Pixels: the height of a target that a thumb hits (WCAG 2.5.5)."""
 
-SMALL = """(least) => [...document.querySelectorAll("button, a[href], select, summary")]
-  .filter((e) => !e.matches(".skip, .take") && e.checkVisibility())
+SMALL = """(least) => [...document.querySelectorAll("button, a[href], select, summary, input")]
+  .filter((e) => !e.matches(".skip, .take, input:is(.handle, [type=checkbox], [type=radio])"))
+  .filter((e) => e.checkVisibility())
   .filter((e) => e.getBoundingClientRect().width > 1)
   .filter((e) => Math.round(e.getBoundingClientRect().height) < least)
   .map((e) => e.outerHTML.slice(0, 120))"""
@@ -38,24 +39,10 @@ def library(server: Running) -> Iterator[Library]:
         yield library_of(server, client, "Table 2: our signs")
 
 
-@pytest.fixture
+@pytest.fixture(scope="module")
 def touched(browser: Browser, server: Running, library: Library) -> Iterator[Page]:
-    """Return a page on a phone with a clip and its answer."""
-    yield from touch(browser, server, library, PHONE)
-
-
-@pytest.fixture
-def tablet(browser: Browser, server: Running, library: Library) -> Iterator[Page]:
-    """Return the same page on a tablet."""
-    yield from touch(browser, server, library, TABLET)
-
-
-def touch(
-    browser: Browser, server: Running, library: Library, size: tuple[int, int]
-) -> Iterator[Page]:
-    context = new_context(
-        browser, viewport=ViewportSize(width=size[0], height=size[1]), has_touch=True
-    )
+    """Return a page under fingers with a clip and its answer; each test leaves it in Studio."""
+    context = new_context(browser, viewport=PHONE, has_touch=True, is_mobile=True)
     context.add_init_script("localStorage.setItem('osg-studio.tour', 'seen')")
     context.add_cookies([{"name": WITHOUT_SCENE, "value": "1", "url": server.address}])
     page = context.new_page()
@@ -88,8 +75,32 @@ def test_the_picker_shows_a_name_and_the_views_a_shade_where_more_follow(touched
     tabs.evaluate("(row) => { row.scrollLeft = row.scrollWidth; }")
     expect(tabs.get_by_role("link", name="Live")).to_be_in_viewport(ratio=0.9)
     assert end_of(tabs) != shaded
-    touched.goto(f"{touched.url}&view=live")
+    studio = touched.url
+    touched.goto(f"{studio}&view=live")
     expect(tabs.get_by_role("link", name="Live")).to_be_in_viewport(ratio=0.9)
+    touched.goto(studio)
+    expect(touched.get_by_role("region", name="Why")).to_contain_text("'line'")
+
+
+def test_the_answer_follows_the_picture(touched: Page) -> None:
+    expect(touched.get_by_role("img", name="Trajectory image: this take")).to_be_visible()
+    parts = (
+        "#lab-box",
+        "#outcome",
+        ".why-sentence",
+        "#timeline",
+        ".vote-images",
+        ".vote-table",
+    )
+    tops = [box_of(touched.locator(part).first)["y"] for part in parts]
+    assert tops == sorted(tops)
+    assert touched.evaluate("document.documentElement.scrollWidth") <= PHONE["width"]
+    touched.get_by_role("button", name="New language").click()
+    dialog = touched.get_by_role("dialog", name="New language")
+    expect(dialog).to_be_visible()
+    assert dialog.evaluate("(box) => box.scrollWidth <= box.clientWidth")
+    touched.keyboard.press("Escape")
+    expect(dialog).to_be_hidden()
 
 
 def test_every_target_is_high_enough_for_a_thumb(touched: Page, library: Library) -> None:
@@ -104,6 +115,7 @@ def test_every_target_is_high_enough_for_a_thumb(touched: Page, library: Library
         expect(touched.locator(".view:visible").locator("button, a").first).to_be_visible()
         small[name] = touched.evaluate(SMALL, LEAST)
     assert {name: found for name, found in small.items() if found} == {}
+    tabs.get_by_text("Studio", exact=True).click()
 
 
 def test_two_fingers_enlarge_the_picture_alone_and_one_moves_it(touched: Page) -> None:
@@ -140,16 +152,16 @@ def test_two_fingers_enlarge_the_picture_alone_and_one_moves_it(touched: Page) -
     assert box_of(picture) == pytest.approx(before)
 
 
-def test_on_a_tablet_the_bars_take_a_third_of_the_height(tablet: Page) -> None:
-    picture = box_of(tablet.locator("#lab-area"))
-    assert picture["height"] >= 2 / 3 * TABLET[1]
-    assert picture["y"] + picture["height"] <= TABLET[1]
-    expect(tablet.get_by_role("button", name="Take 1,")).to_be_in_viewport(ratio=1)
-    expect(tablet.get_by_role("button", name="Recognise", exact=True)).to_be_in_viewport(ratio=1)
-
-
-def test_the_buttons_of_a_gesture_lie_beside_its_drawing(tablet: Page) -> None:
-    card = tablet.get_by_role("list", name="Gestures").get_by_role("listitem").first
+def test_on_a_tablet_the_bars_take_a_third_of_the_height_and_buttons_lie_beside_drawings(
+    touched: Page,
+) -> None:
+    touched.set_viewport_size(TABLET)
+    picture = box_of(touched.locator("#lab-area"))
+    assert picture["height"] >= 2 / 3 * TABLET["height"]
+    assert picture["y"] + picture["height"] <= TABLET["height"]
+    expect(touched.get_by_role("button", name="Take 1,")).to_be_in_viewport(ratio=1)
+    expect(touched.get_by_role("button", name="Recognise", exact=True)).to_be_in_viewport(ratio=1)
+    card = touched.get_by_role("list", name="Gestures").get_by_role("listitem").first
     drawing = box_of(card.get_by_role("img"))
     for name in ("Change circle", "Delete circle"):
         button = card.get_by_role("button", name=name)

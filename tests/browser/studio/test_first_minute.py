@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
 from pathlib import Path
 
 import httpx
@@ -12,8 +11,8 @@ from playwright.sync_api import Browser, Page, Route, expect
 
 from app.recognition import Recording
 from app.settings import Settings
-from tests.api.running import Running, client_of, running, until
-from tests.browser.conftest import OpenPage
+from tests.api.running import Running, running, until
+from tests.browser.conftest import WITHOUT_SCENE, EmptyFrames, OpenPage
 from tests.browser.library import add_clip
 from tests.conftest import RECORDINGS
 
@@ -21,12 +20,6 @@ SAMPLE = "Table 2: eight signs"
 
 MISREAD = "unfinished-triangle"
 """Name of the example's clip."""
-
-
-@pytest.fixture
-def client(server: Running) -> Iterator[httpx.Client]:
-    with client_of(server.address) as client:
-        yield client
 
 
 def sample_id(client: httpx.Client) -> str:
@@ -72,22 +65,23 @@ def test_the_start_shows_a_salute_and_the_example_stays_at_hand(
     expect(page.locator("#clock")).to_have_text(re.compile(r"^3\.[4-9]"))
 
 
-def test_after_seven_strokes_the_rest_is_folded(
+def test_after_seven_strokes_the_rest_is_folded_and_gestures_that_are_alike_lead_to_health(
     open_page: OpenPage, server: Running, clips: Path
 ) -> None:
-    def lengthen(route: Route) -> None:
+    def change(route: Route) -> None:
         answer = route.fetch()
         why = answer.json()
+        cause = {"kind": "near_gesture", "sentence": "They are nearly alike.", "start": None}
+        why.update(causes=[cause], sentence=cause["sentence"], blame=[])
         word = why["strokes"][0][1]
         words = [word | {"text": f"stroke {n}"} for n in range(9)]
         more = word | {"text": ", then 2 more", "start": None, "folded": words[7:]}
         why["strokes"][0] = [*words[:7], more]
         route.fulfill(response=answer, json=why)
 
-    page = open_page()
     add_example(server, clips)
-    page.reload()
-    page.route("**/explanation*", lengthen)
+    page = open_page(scene=False)
+    page.route("**/explanation*", change)
     page.get_by_role("button", name="All keys").click()
     page.get_by_role("button", name="Example").click()
     shown = page.get_by_role("group", name="Strokes in words").locator("p").first
@@ -95,24 +89,6 @@ def test_after_seven_strokes_the_rest_is_folded(
     expect(shown.get_by_role("button", name="stroke 8")).to_be_hidden()
     shown.get_by_text("then 2 more").click()
     expect(shown.get_by_role("button", name="stroke 8")).to_be_visible()
-
-
-def test_gestures_that_are_alike_are_changed_in_health(
-    open_page: OpenPage, server: Running, clips: Path
-) -> None:
-    def call_alike(route: Route) -> None:
-        answer = route.fetch()
-        why = answer.json()
-        cause = {"kind": "near_gesture", "sentence": "They are nearly alike.", "start": None}
-        why.update(causes=[cause], sentence=cause["sentence"], blame=[])
-        route.fulfill(response=answer, json=why)
-
-    page = open_page()
-    add_example(server, clips)
-    page.reload()
-    page.route("**/explanation*", call_alike)
-    page.get_by_role("button", name="All keys").click()
-    page.get_by_role("button", name="Example").click()
     page.get_by_role("button", name="Change one in Health").click()
     expect(page.locator("#view-health")).to_be_visible()
 
@@ -157,24 +133,28 @@ def without_clips(page: Page) -> bool:
     return page.locator(".question").is_visible()
 
 
-@pytest.mark.parametrize("size", [(1440, 900), (1024, 768), (768, 1024), (390, 844)], ids=str)
 def test_the_tour_frames_what_it_speaks_of_and_never_covers_it(
-    open_page: OpenPage, server: Running, clips: Path, size: tuple[int, int]
+    open_page: OpenPage, server: Running, clips: Path
 ) -> None:
     add_example(server, clips)
-    page = open_page({"view": "studio"}, scene=False, size=size, alone=True)
+    page = open_page({"view": "studio"}, scene=False)
     expect(page.locator("#connection")).to_contain_text("Connected")
-    for example in (False, True):
-        if example:
-            page.keyboard.press("?")
-            page.get_by_role("button", name="Example").click()
-            expect(page.get_by_role("region", name="Why")).to_contain_text("'triangle'")
-            expect(page.locator("#stroke-over")).to_be_visible()
-        else:
-            until(lambda: without_clips(page))
+    until(lambda: without_clips(page))
+    check_tour(page)
+    page.keyboard.press("?")
+    page.get_by_role("button", name="Example").click()
+    expect(page.get_by_role("region", name="Why")).to_contain_text("'triangle'")
+    expect(page.locator("#stroke-over")).to_be_visible()
+    check_tour(page)
+
+
+def check_tour(page: Page) -> None:
+    """Check where the tour and what it frames are, on several screens."""
+    tour, ring = page.locator(".tour"), page.locator("#tour-ring")
+    for width, height in ((1440, 900), (1024, 768), (768, 1024), (390, 844)):
+        page.set_viewport_size({"width": width, "height": height})
         page.keyboard.press("?")
         page.get_by_role("button", name="Tour").click()
-        tour, ring = page.locator(".tour"), page.locator("#tour-ring")
         for number in range(1, 5):
             tour.get_by_role("button", name="Show me" if number == 1 else "Next").click()
             expect(tour).to_contain_text(f"{number + 1} of 5")
@@ -188,7 +168,7 @@ def test_the_tour_frames_what_it_speaks_of_and_never_covers_it(
                 or framed["x"] >= card["x"] + card["width"]
                 or card["y"] >= framed["y"] + framed["height"]
                 or framed["y"] >= card["y"] + card["height"]
-            ), (number, example, card, framed)
+            ), (number, width, card, framed)
         page.keyboard.press("Escape")
 
 
@@ -215,8 +195,9 @@ def test_the_first_gesture_goes_into_a_language_of_ones_own_unless_the_sample_is
 def test_a_film_shows_how_a_gesture_is_made_and_what_is_not_ones_own_is_folded(
     browser: Browser, tmp_path: Path
 ) -> None:
-    with running(Settings(data_dir=tmp_path)) as server:
+    with running(Settings(data_dir=tmp_path), EmptyFrames) as server:
         context = browser.new_context(base_url=server.address)
+        context.add_cookies([{"name": WITHOUT_SCENE, "value": "1", "url": server.address}])
         context.add_init_script("localStorage.setItem('osg-studio.tour', 'seen')")
         page = context.new_page()
         page.goto("/")

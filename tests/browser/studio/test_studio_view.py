@@ -29,15 +29,21 @@ HTMLCanvasElement.prototype.getContext = function (kind, ...rest) {
 
 
 @pytest.fixture
-def library(server: Running, request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[Library]:
+def library(server: Running, request: pytest.FixtureRequest) -> Iterator[Library]:
     with client_of(server.address) as client:
-        library = library_of(server, client, request.node.name[:40])
-        video = tmp_path / "numbered.mp4"
-        recording = recording_of("circle")
-        times = np.array(numbered_clip(video, len(recording.poses)))
-        recording = replace(recording, poses=replace(recording.poses, time=times))
-        clip = add_clip(server, name="numbered.mp4", video=video, recording=recording)
-        yield Library(clip, library.language, client)
+        # A short name: a long one takes lines of its own.
+        yield library_of(server, client, request.node.name.removeprefix("test_")[:12])
+
+
+@pytest.fixture
+def numbered(server: Running, library: Library, tmp_path: Path) -> Library:
+    """Return the library with a clip whose pictures carry their numbers."""
+    video = tmp_path / "numbered.mp4"
+    recording = recording_of("circle")
+    times = np.array(numbered_clip(video, len(recording.poses)))
+    recording = replace(recording, poses=replace(recording.poses, time=times))
+    clip = add_clip(server, name="numbered.mp4", video=video, recording=recording)
+    return replace(library, clip=clip)
 
 
 def canvas_of(page: Page) -> Locator:
@@ -56,33 +62,27 @@ def is_square(picture: Locator) -> Callable[[], bool]:
 
 
 def test_the_flat_picture_comes_first_and_the_cube_is_a_key_away_and_remembered(
-    open_page: OpenPage, library: Library
+    open_page: OpenPage, numbered: Library, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    page = open_page(library.address, size=(1440, 900))
-    until(is_square(canvas_of(page)))
+    page = open_page(numbered.address, size=(1440, 900))
+    canvas = canvas_of(page)
+    until(is_square(canvas))
     cube = page.get_by_role("button", name="Space-time cube")
     expect(cube).to_have_attribute("aria-pressed", "false")
     page.keyboard.press("v")
     expect(cube).to_have_attribute("aria-pressed", "true")
-    until(lambda: not is_square(canvas_of(page))())
+    until(lambda: not is_square(canvas)())
     page.reload()
     expect(cube).to_have_attribute("aria-pressed", "true")
     expect(page.locator("#lab-loading")).to_be_hidden()
     cube.click()
-    until(is_square(canvas_of(page)))
-    page.reload()
-    until(is_square(canvas_of(page)))
-
-
-def test_the_way_to_the_cube_is_seen_by_those_who_welcome_motion(
-    open_page: OpenPage, library: Library, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    # Slow enough for screenshots during the transition, on any machine.
-    monkeypatch.setattr(workspace, "TRANSITION_SECONDS", 30.0)
-    page = open_page(library.address, size=(1440, 900))
-    page.emulate_media(reduced_motion="no-preference")
-    canvas = canvas_of(page)
     until(is_square(canvas))
+    page.reload()
+    until(is_square(canvas))
+
+    # The way to it is seen by those who welcome motion: slow enough here for screenshots.
+    monkeypatch.setattr(workspace, "TRANSITION_SECONDS", 30.0)
+    page.emulate_media(reduced_motion="no-preference")
     seen: set[bytes] = set()
 
     def is_on_the_way() -> bool:
@@ -98,16 +98,20 @@ def test_the_way_to_the_cube_is_seen_by_those_who_welcome_motion(
     until(is_square(canvas))
 
 
-def test_answer_picture_drawings_and_first_voters_are_in_sight_without_scrolling(
+def test_answer_picture_drawings_and_first_voters_are_in_sight_and_nothing_jumps(
     open_page: OpenPage, library: Library
 ) -> None:
-    recognition = library.recognise("line")
-    query = {**library.address, "recognition": recognition}
-    page = open_page(query, size=(1440, 900), scene=False)
+    page = open_page(library.address, size=(1440, 900), scene=False)
+    expect(page.get_by_role("button", name="Recognise", exact=True)).to_be_enabled()
+    page.get_by_label("Expected", exact=True).select_option("line")
+    before = page.locator("#lab-box").bounding_box()
+    page.get_by_role("button", name="Recognise", exact=True).click()
     expect(page.get_by_role("region", name="Why")).to_contain_text("'line'")
-    picture = page.locator("#lab-box").bounding_box()
-    assert picture is not None
-    assert picture["height"] >= 480
+    after = page.locator("#lab-box").bounding_box()
+    assert before is not None
+    assert after is not None
+    assert after["y"] == pytest.approx(before["y"], abs=4)
+    assert after["height"] >= 480
     table = page.get_by_role("table", name="Votes")
     for part in (
         page.locator("#lab-box"),
@@ -121,10 +125,19 @@ def test_answer_picture_drawings_and_first_voters_are_in_sight_without_scrolling
     expect(table.locator("tbody tr")).to_have_count(len(MOTION_VOTERS))
 
 
-def test_the_expected_stroke_is_dashed_over_the_shown_one_once_there_is_an_answer(
+def test_tracks_and_once_there_is_an_answer_the_expected_stroke_lie_over_the_flat_picture(
     open_page: OpenPage, library: Library
 ) -> None:
     page = open_page(library.address, size=(1440, 900), scene=False)
+    track = page.get_by_role("img", name="Track of the right wrist")
+    page.get_by_role("button", name="Tracks", exact=True).click()
+    expect(track).to_be_visible()
+    expect(track.locator("path").first).to_have_attribute("d", re.compile("^M"))
+    expect(page.get_by_role("img", name="Track of the left wrist")).to_have_count(0)
+    page.reload()
+    expect(track).to_be_visible()
+    page.keyboard.press("g")
+    expect(track).to_be_hidden()
     expect(page.get_by_role("button", name="Recognise", exact=True)).to_be_enabled()
     over = page.locator("#stroke-over")
     expect(over).to_be_hidden()
@@ -179,9 +192,11 @@ def test_a_refused_take_names_one_gesture_as_nearest_and_none_as_chosen(
 ) -> None:
     clip = add_clip(server, "corner", name="corner.mp4")
     refused = replace(library, clip=clip)
+    page = open_page(refused.address, size=(1440, 900), scene=False)
     for expected, role in ((None, "nearest"), ("circle", "expected"), ("line", "expected")):
-        query = {**refused.address, "recognition": refused.recognise(expected)}
-        page = open_page(query, size=(1440, 900), scene=False)
+        if expected:
+            page.get_by_label("Expected", exact=True).select_option(expected)
+        page.get_by_role("button", name="Recognise", exact=True).click()
         expect(page.locator("#outcome")).to_contain_text("Not recognised; nearest is circle")
         expect(page.locator("#stroke-over")).to_have_text(f"{expected or 'circle'} {role}")
         captions = page.locator("#votes figcaption")
@@ -193,40 +208,12 @@ def test_a_refused_take_names_one_gesture_as_nearest_and_none_as_chosen(
         expect(page.get_by_text(re.compile("chosen"))).to_have_count(0)
 
 
-def test_nothing_jumps_when_the_reasons_arrive(open_page: OpenPage, library: Library) -> None:
-    page = open_page(library.address, size=(1440, 900), scene=False)
-    expect(page.get_by_role("button", name="Recognise", exact=True)).to_be_enabled()
-    page.get_by_label("Expected", exact=True).select_option("line")
-    before = page.locator("#lab-box").bounding_box()
-    page.get_by_role("button", name="Recognise", exact=True).click()
-    expect(page.get_by_role("region", name="Why")).to_contain_text("'line'")
-    after = page.locator("#lab-box").bounding_box()
-    assert before is not None
-    assert after is not None
-    assert after["y"] == pytest.approx(before["y"], abs=4)
-
-
-def test_the_tracks_of_the_moving_wrists_are_shown_in_the_flat_view_and_remembered(
-    open_page: OpenPage, library: Library
-) -> None:
-    page = open_page(library.address, size=(1440, 900), scene=False)
-    track = page.get_by_role("img", name="Track of the right wrist")
-    page.get_by_role("button", name="Tracks", exact=True).click()
-    expect(track).to_be_visible()
-    expect(track.locator("path").first).to_have_attribute("d", re.compile("^M"))
-    expect(page.get_by_role("img", name="Track of the left wrist")).to_have_count(0)
-    page.reload()
-    expect(track).to_be_visible()
-    page.keyboard.press("g")
-    expect(track).to_be_hidden()
-
-
 def test_without_webgl_the_page_draws_the_same_picture_and_says_why(
-    open_page: OpenPage, library: Library
+    open_page: OpenPage, numbered: Library
 ) -> None:
     page = open_page()
     page.add_init_script(WITHOUT_WEBGL)
-    query = {**library.address, "recognition": library.recognise("circle")}
+    query = {**numbered.address, "recognition": numbered.recognise("circle")}
     page.goto(f"{page.url.split('?')[0]}?{httpx.QueryParams(query)}")
     expect(page.get_by_role("status").filter(has_text="offers no WebGL 2")).to_be_visible()
     expect(page.locator("#lab")).to_be_hidden()
@@ -276,7 +263,7 @@ def test_a_weight_is_tried_where_the_distances_are_shown(
 
 
 def test_one_click_turns_the_picture_of_a_diver_who_lies_on_the_side(
-    open_page: OpenPage, server: Running, tmp_path: Path
+    open_page: OpenPage, server: Running
 ) -> None:
     recording = recording_of("circle")
     upright = recording.poses

@@ -62,8 +62,8 @@ def test_all_takes_are_in_one_table(
     page.wait_for_url(f"**clip={both}&take=1**")
 
 
-def test_takes_between_two_gestures_and_rejected_ones_are_filtered(
-    open_page: OpenPage, library: Library
+def test_takes_between_two_gestures_and_rejected_ones_are_filtered_and_a_table_is_cancelled(
+    open_page: OpenPage, server: Running, library: Library
 ) -> None:
     library.add_gesture("ring")
     page = open_page(library.address, scene=False)
@@ -79,14 +79,10 @@ def test_takes_between_two_gestures_and_rejected_ones_are_filtered(
     shown = rows.locator("td:nth-child(4)").all_inner_texts()
     assert [text for text in shown if not text.startswith("rejected")] == []
 
-
-def test_a_table_shows_how_far_it_is_and_is_cancelled(
-    open_page: OpenPage, server: Running, library: Library
-) -> None:
+    # The table shows how far it is.
     add_clip(server, *["circle", "line"] * 30, name="long.mp4")
-    page = open_page(library.address, scene=False)
+    page.reload()
     page.get_by_role("button", name="Read all takes").click()
-    dialog = page.get_by_role("dialog", name="All takes")
     with page.expect_event("requestfailed", lambda each: "take-table" in each.url):
         dialog.get_by_role("button", name="Recognise all takes").click()
         expect(dialog.get_by_text("long.mp4")).to_contain_text("Recognising clip")

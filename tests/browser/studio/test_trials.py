@@ -3,26 +3,18 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
 from dataclasses import replace
 
-import pytest
 from playwright.sync_api import Locator, Page, expect
 
 from app.recognition import Recording
 from tests.api.recordings import recording_of
-from tests.api.running import Running, client_of
+from tests.api.running import Running
 from tests.browser.conftest import OpenPage
-from tests.browser.library import Library, add_clip, library_of
+from tests.browser.library import Library, add_clip
 from tests.recognition.damaged_poses import with_sides_exchanged
 
 REPAIR = "with exchanged sides put right and jumps left out"
-
-
-@pytest.fixture
-def library(server: Running, request: pytest.FixtureRequest) -> Iterator[Library]:
-    with client_of(server.address) as client:
-        yield library_of(server, client, request.node.name[:40])
 
 
 def exchanged() -> Recording:
@@ -47,7 +39,7 @@ def try_out(page: Page, words: str | re.Pattern[str]) -> Locator:
     return trial
 
 
-def test_a_change_is_tried_and_taken_back(
+def test_a_change_is_tried_taken_back_kept_and_goes_with_the_language(
     open_page: OpenPage, server: Running, library: Library
 ) -> None:
     page = opened_at_a_mistake(open_page, server, library)
@@ -59,17 +51,11 @@ def test_a_change_is_tried_and_taken_back(
     expect(outcome).to_contain_text("Recognised as line, expected circle")
     assert library.client.get(f"/api/v1/languages/{library.language}").json()["tuning"] is None
 
-
-def test_a_tuning_that_is_kept_goes_with_the_language_and_can_be_taken_back(
-    open_page: OpenPage, server: Running, library: Library
-) -> None:
-    page = opened_at_a_mistake(open_page, server, library)
     trial = try_out(page, REPAIR)
     trial.get_by_role("button", name="Keep").click()
     tuning = page.locator("#tuning")
     expect(tuning).to_contain_text(f"Recognised by the profile paper, {REPAIR}")
     expect(trial).to_have_count(0)
-    outcome = page.locator("#outcome")
     expect(outcome).to_contain_text(re.compile(r"as expectedconfidence \d+ %, \d+ % of the votes$"))
 
     # The export for the robot has the change too.
@@ -101,31 +87,6 @@ def revision_of(library: Library) -> int:
     return int(language.json()["revision"])
 
 
-@pytest.mark.parametrize("leave", ["another clip", "closed"])
-def test_a_trial_leaves_the_language_alone_when_it_is_left(
-    open_page: OpenPage, server: Running, library: Library, leave: str
-) -> None:
-    strict = f"/api/v1/languages/{library.language}/gestures/circle"
-    library.client.patch(strict, json={"direction": "on"}).raise_for_status()
-    refused = replace(library, clip=add_clip(server, "circle backwards", name="backwards.mp4"))
-    page = open_page({**refused.address, "recognition": refused.recognise("circle")}, scene=False)
-    before = revision_of(library)
-    try_out(page, re.compile("the switch direction of 'circle' off"))
-    expect(page.locator("#outcome")).to_contain_text("Recognised as circle, as expected")
-    assert revision_of(library) == before
-    if leave == "closed":
-        page.close()
-        page = open_page({"clip": refused.clip, "language": library.language}, scene=False)
-        expect(page.get_by_role("button", name="Recognise", exact=True)).to_be_enabled()
-    else:
-        page.get_by_role("list", name="Clips").get_by_role("button", name="Show").last.click()
-    expect(page.locator("#outcome")).to_be_empty()
-    assert revision_of(library) == before
-    # A trial is not evidence either: only a take kept in the test set is.
-    test_set = library.client.get(f"/api/v1/languages/{library.language}/test-set").json()
-    assert test_set["takes"] == []
-
-
 def test_the_take_as_another_demonstration_is_read_without_itself(
     open_page: OpenPage, server: Running, library: Library
 ) -> None:
@@ -150,7 +111,7 @@ def test_the_take_as_another_demonstration_is_read_without_itself(
     expect(page.get_by_role("button", name="2 demonstrations of square")).to_be_visible()
 
 
-def test_a_change_of_a_gesture_is_kept_or_taken_back(
+def test_a_change_of_a_gesture_is_left_taken_back_or_kept(
     open_page: OpenPage, server: Running, library: Library
 ) -> None:
     strict = f"/api/v1/languages/{library.language}/gestures/circle"
@@ -165,12 +126,26 @@ def test_a_change_of_a_gesture_is_kept_or_taken_back(
     expect(why).to_contain_text("The take goes through 'circle' backwards.")
     # Replacing the demonstration by the take would break the gesture for all who show it correctly.
     expect(why.get_by_role("button", name=re.compile("as the demonstration"))).to_have_count(0)
-    trial = try_out(page, re.compile("the switch direction of 'circle' off"))
+    direction = re.compile("the switch direction of 'circle' off")
+    try_out(page, direction)
+    expect(outcome).to_contain_text("Recognised as circle, as expected")
+    # A trial that is left leaves the language alone.
+    page.get_by_role("list", name="Clips").get_by_role("button", name="Show").last.click()
+    expect(outcome).to_be_empty()
+    assert revision_of(library) == before
+    page.get_by_role("button", name="Show circle backwards.mp4").click()
+    expect(page.get_by_label("Expected", exact=True)).to_have_value("circle")
+    page.get_by_role("button", name="Recognise", exact=True).click()
+    expect(outcome).to_contain_text("Not recognised")
+    trial = try_out(page, direction)
     expect(outcome).to_contain_text("Recognised as circle, as expected")
     trial.get_by_role("button", name="Discard").click()
     expect(outcome).to_contain_text("Not recognised")
     assert revision_of(library) == before
-    try_out(page, re.compile("direction")).get_by_role("button", name="Keep").click()
+    # A trial is not evidence either: only a take kept in the test set is.
+    test_set = library.client.get(f"/api/v1/languages/{library.language}/test-set").json()
+    assert test_set["takes"] == []
+    try_out(page, direction).get_by_role("button", name="Keep").click()
     expect(page.get_by_text("Change kept")).to_be_visible()
     switches = library.client.get(f"/api/v1/languages/{library.language}").json()["gestures"]
     assert [each["direction"] for each in switches if each["label"] == "circle"] == ["off"]

@@ -7,6 +7,14 @@ test("a half is rounded to the even number, as in the findings' own words", () =
   assert.deepEqual([0.005, 0.015, 0.025, 0.125, 0.135].map(percent), ["<1", "2", "2", "12", "14"]);
 });
 
+test("every fortieth is rounded as Python's formats of per cents do", () => {
+  const python =
+    "0 2 5 8 10 12 15 18 20 22 25 28 30 32 35 38 40 42 45 48 50 " +
+    "52 55 57 60 62 65 68 70 72 75 78 80 82 85 88 90 92 95 98 100";
+  const rates = Array.from({ length: 41 }, (_, takes) => takes / 40);
+  assert.equal(rates.map(percent).join(" "), python);
+});
+
 test("a rate above 0 is never written as 0", () => {
   assert.deepEqual([0, 0.001, 1].map(percent), ["0", "<1", "100"]);
 });
