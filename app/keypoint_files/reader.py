@@ -83,7 +83,7 @@ def read_keypoints(
     source, given = Path(path), options or KeypointOptions()
     allowed = limits or VideoLimits()
     table = _table(source, given, allowed)
-    table, rounded = _count_rounded(table, given, source)
+    table, rounded = _number_rounded_frames(table, given, source)
     time, clock = _seconds(table, given, source), FrameClock()
     if not table.times.counted:
         time = np.array([clock.seconds(each) for each in time.tolist()])
@@ -139,10 +139,10 @@ def _table(path: Path, options: KeypointOptions, limits: VideoLimits) -> Keypoin
     return table
 
 
-def _count_rounded(
+def _number_rounded_frames(
     table: KeypointTable, options: KeypointOptions, path: Path
 ) -> tuple[KeypointTable, tuple[str, ...]]:
-    """Count frames whose times cannot be told apart, if the frame rate is given."""
+    """Replace rounded times by numbers of the frames, if the frame rate is given, and tell it."""
     try:
         table.times.require_order(path)
     except RoundedTimesError:

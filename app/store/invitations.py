@@ -23,7 +23,7 @@ MOST_LISTED: Final = 50
 """Most open invitations of a language, and most of those that are over that are listed."""
 
 LONGEST_DAYS: Final = 30
-"""Longest time for which an invitation may be valid."""
+"""Longest time for which an invitation may be valid; `health/invitations.js` offers it."""
 
 ASK: Final = "ask whoever sent it for a new one"
 

@@ -27,7 +27,7 @@ from app.recognition.triggers.trigger import SALUTE, Trigger
 
 MOST_PIXELS: Final = 2_500_000
 """Most pixels of one frame, with the margin that FFmpeg adds to its count: 1920 x 1080 is accepted,
-and the page sends half of that."""
+and `grab` of the page's `camera/video-source.js` sends at most 960 a side."""
 
 RATE_SECONDS: Final = 2.0
 """Seconds over which the frame rate is averaged: long enough to read, short enough to be
@@ -36,7 +36,7 @@ current."""
 TIMESTAMP: Final = struct.Struct("<d")
 """Header of a frame's JPEG: the time of capture, in seconds of the page's own clock."""
 
-ASK_SECONDS: Final = 1.0
+TRIGGER_SECONDS: Final = 1.0
 """Seconds between two checks of the language's trigger, which an edit may change."""
 
 RecognizerSource = Callable[[], Recognizer | None]
@@ -243,7 +243,7 @@ class FramePipeline:
 
     def _find_trigger(self) -> Trigger:
         """Return the trigger of the language in use; without a language, the salute."""
-        if clock.monotonic() - self._asked > ASK_SECONDS:
+        if clock.monotonic() - self._asked > TRIGGER_SECONDS:
             self._asked = clock.monotonic()
             try:
                 recognizer = self._recognizer()

@@ -64,7 +64,7 @@ class ConnectionGuard:
 
     def __init__(self, idle_seconds: float, most: int = 0) -> None:
         self._idle_seconds = idle_seconds
-        self._most = most or allowed_connections()
+        self._most = most or raise_connection_limit()
         self._connections: dict[asyncio.BaseTransport, _Connection] = {}
 
     def __len__(self) -> int:
@@ -136,8 +136,8 @@ class GuardedProtocol(AutoHTTPProtocol):  # type: ignore[misc, valid-type]  # ch
         return guard
 
 
-def allowed_connections() -> int:
-    """Return how many connections this process may have, after raising its limit of open files."""
+def raise_connection_limit() -> int:
+    """Raise the process's limit of open files, and return how many connections it may have."""
     if sys.platform == "win32":
         return MOST_CONNECTIONS // 8  # its limit of sockets in one loop
     import resource

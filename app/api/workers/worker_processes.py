@@ -36,7 +36,7 @@ hundred processes that probe them, nor health checks and test runs take all core
 MOST_MESSAGE_BYTES = 256 * 1024 * 1024
 """Longest message: an imported language of a thousand gestures has 27 million characters."""
 
-AGAIN_SECONDS = 2.0
+RETRY_SECONDS = 2.0
 """Wait in seconds before a task whose executor was lost is repeated."""
 
 Hear = Callable[[Progressed | Answered], Awaitable[None]]
@@ -136,7 +136,7 @@ class Workers:
                     return task.hung or task.broken_off
                 except ExecutorLost as error:
                     logger.warning("a job is run again: %s", error)
-            await asyncio.sleep(AGAIN_SECONDS)
+            await asyncio.sleep(RETRY_SECONDS)
 
 
 async def _next_message(lines: Lines, silence_seconds: float) -> Message | None:

@@ -39,7 +39,7 @@ from app.recognition.decision.outcome import (
     is_rejected,
 )
 from app.recognition.decision.references import (
-    MAX_GESTURES_TRAVERSED,
+    MOST_DEMONSTRATIONS_TRAVERSED,
     References,
     describe_query,
     find_nearest,
@@ -142,7 +142,7 @@ class FusedVote:
         weights, self._between = _weigh_voters(every)
         scores = fuse(every.own_distances, weights, self._between) * every.own_corrections
         # Among more gestures nothing is found automatically.
-        compared = scores if len(every.as_shown) <= MAX_GESTURES_TRAVERSED else scores[:0]
+        compared = scores if len(every.as_shown) <= MOST_DEMONSTRATIONS_TRAVERSED else scores[:0]
         self._tempo = find_tempo_dependent(every, compared)
         self._moving = MovingReferences.of(every.shown, every.owners, _spread(every, compared))
         kept = find_unambiguous_traversals(every, compared)
@@ -419,7 +419,7 @@ def _measure_novelty(table: ScoreTable) -> float:
 
 def _weigh_voters(references: References) -> tuple[FloatArray, FloatArray]:
     """Return the voters' weights in a language, and their between-class distances."""
-    rows = references.as_shown[:MAX_GESTURES_TRAVERSED]
+    rows = references.as_shown[:MOST_DEMONSTRATIONS_TRAVERSED]
     one, other = np.triu_indices(len(rows), 1)
     owners = references.row_owners[rows]
     apart = owners[one] != owners[other]

@@ -28,7 +28,7 @@ from app.recognition.poses.trajectory import Trajectory
 from app.recognition.voters.motion_voters import DtwVoter, Path
 from app.recognition.voters.registry import MOTION_VOTERS
 
-MAX_GESTURES_TRAVERSED = 64
+MOST_DEMONSTRATIONS_TRAVERSED = 64
 """Number of demonstrations beyond which only demonstrated traversals are used: figures that differ
 in direction only are then likely, and comparing all traversals would take seconds."""
 
@@ -267,7 +267,7 @@ class References:
     @cached_property
     def own_distances(self) -> FloatArray:
         """``(V, S', R)``: distances of the first S' demonstrated traversals to all rows."""
-        rows = self.as_shown[:MAX_GESTURES_TRAVERSED]
+        rows = self.as_shown[:MOST_DEMONSTRATIONS_TRAVERSED]
         own = np.empty((len(MOTION_VOTERS), len(rows), len(self)))
         for start in range(0, len(self), ROWS_AT_ONCE):
             block = self.take(np.arange(start, min(start + ROWS_AT_ONCE, len(self))))
@@ -279,7 +279,7 @@ class References:
     @cached_property
     def own_corrections(self) -> FloatArray:
         """``(S', R)``: the corrections of the first S' demonstrated traversals."""
-        rows = self.as_shown[:MAX_GESTURES_TRAVERSED]
+        rows = self.as_shown[:MOST_DEMONSTRATIONS_TRAVERSED]
         shares = self.described[SHARES][rows]
         return np.array([self.correct(each) for each in shares]).reshape(len(rows), len(self))
 
@@ -409,7 +409,7 @@ def _build(gestures: tuple[Gesture, ...]) -> References:
     numbers, owners, shown = zip(*every, *images, strict=True)
     landmarks = find_followed_landmarks([each.salient for each in shown])
     traversals = [
-        _list_traversals(each, landmarks, every=len(shown) <= MAX_GESTURES_TRAVERSED)
+        _list_traversals(each, landmarks, every=len(shown) <= MOST_DEMONSTRATIONS_TRAVERSED)
         for each in shown
     ]
     described = [

@@ -223,7 +223,7 @@ def find_causes(
 
 
 def _only_sinks(context: RecognitionContext) -> bool:
-    """Return whether an open take is the arm that sinks after a salute that was taken as first."""
+    """Return whether an unclosed take is the arm that sinks after its last salute."""
     if context.closed or not context.strokes:
         return False
     names = [*{each.hand for each in context.strokes}]

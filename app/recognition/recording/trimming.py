@@ -160,7 +160,8 @@ def find_stroke(
         Poses from the first salute to the last one.
     opening, closing
         When the salutes were seen. The hand may keep the shape while it leaves, and form it before
-        it arrives. `closing` None: the take was not closed, and only its beginning is trimmed.
+        it arrives. `closing` None: the take was not closed, so only its beginning is trimmed, and
+        the stroke ends with the last frame.
     posed
         Whether the triggers are poses of the arms. Any movement entirely within a pose is unrest,
         within a salute a small one only.

@@ -2,8 +2,8 @@
 
 A mode counts as set when it is acknowledged, also as in progress, and the heartbeat shows it: an
 acknowledgement alone could belong to an earlier command, a heartbeat alone could date from before a
-restart. ArduSub does not acknowledge a depth, which counts as set when the reported target is that
-depth. Lights and camera are only acknowledged.
+restart. The mode is never asked for: each heartbeat tells it. ArduSub does not acknowledge a depth,
+which counts as set when the reported target is that depth. Lights and camera are only acknowledged.
 """
 
 from __future__ import annotations

@@ -1,5 +1,7 @@
 """Patterns: the pulses by which lights and tilt show a reply, and what was before them.
 
+How many pulses a reply has: `app.robot.commands.replies`.
+
 A pattern begins only when the vehicle reports the present value, and the pilot did not change it a
 moment ago. A value that is neither ours nor the one before is the pilot's: the pattern ends, and
 that value stays. The value before is kept in a file while a pattern is played, so that a robot that
@@ -32,13 +34,13 @@ REPORT_SECONDS: Final = 0.1
 FRESH_SECONDS: Final = 2.0
 """Seconds after which a reported value is not known to be the present one."""
 
-ASK_SECONDS: Final = 5.0
+ASK_REPORT_SECONDS: Final = 5.0
 """Seconds between two requests for reports that do not come."""
 
 PILOT_SECONDS: Final = 5.0
 """Seconds without replies after the pilot has changed the value."""
 
-AGAIN_SECONDS: Final = 0.2
+RESEND_SECONDS: Final = 0.2
 """Seconds after which a value that is not reported is sent again: twice the reports' period."""
 
 LONGEST_LEVEL: Final = 1.5
@@ -232,7 +234,7 @@ class PatternPlayer:
         self._ticked = now
         if not is_fresh:
             self.stop(now)
-            if now - self._asked > ASK_SECONDS:
+            if now - self._asked > ASK_REPORT_SECONDS:
                 self._asked = now
                 vehicle, message = self.output.vehicle, float(self.output.reported_by)
                 ask = mavlink.MAV_CMD_SET_MESSAGE_INTERVAL
@@ -242,7 +244,7 @@ class PatternPlayer:
         if self.is_active:
             self._advance(now)
         # A value that is reached is not set again, so that a pilot may change it.
-        if self.is_active and now - self._sent >= AGAIN_SECONDS and not self._is_reached:
+        if self.is_active and now - self._sent >= RESEND_SECONDS and not self._is_reached:
             if now < self._yields or self.output.obstacle:
                 return
             self._sent = now

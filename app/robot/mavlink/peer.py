@@ -30,7 +30,7 @@ rival's, because the vehicle is at another; one that the link or the table exclu
 
 NO_ARDUSUB: Final = "no ArduSub"
 
-AGAIN_SECONDS: Final = 60.0
+NOTE_AGAIN_SECONDS: Final = 60.0
 """Seconds without a sender that is ignored after which the next one is announced again."""
 
 RIVAL_SECONDS: Final = 10.0
@@ -200,7 +200,7 @@ class VehiclePeer:
 
     def _note(self, kind: str, notice: str, now: float) -> None:
         """Announce what is heard again and again, once for each kind while it is heard."""
-        if now - self._noted.get(kind, -math.inf) > AGAIN_SECONDS:
+        if now - self._noted.get(kind, -math.inf) > NOTE_AGAIN_SECONDS:
             self._tell(notice)
         self._noted[kind] = now
 

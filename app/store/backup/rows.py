@@ -1,4 +1,7 @@
-"""Row copy: copies all rows of a database to a database of another kind."""
+"""Row copy: copies all rows of a database to a database of another kind.
+
+A backup of SQLite has the file itself (`archive`).
+"""
 
 from __future__ import annotations
 

@@ -37,6 +37,10 @@ NAME_SIZE = 6.2
 MEANING_SIZE = 3.6
 """Font sizes of the largest cells: readable through a mask at an arm's length and at half of it."""
 
+SMALLEST_NAME = 2.4
+SMALLEST_MEANING = 1.9
+"""Font sizes of the smallest cells; a label that is wider than its cell becomes smaller still."""
+
 LARGEST_FIGURE = 62.0
 """Largest side of a figure in millimetres; larger ones are no clearer."""
 
@@ -245,12 +249,12 @@ def _text_height(side: float) -> float:
 def _cell(gesture: Gesture, left: float, top: float, cell: float, side: float) -> Iterator[Part]:
     scale = side / LARGEST_FIGURE
     yield from _figure(gesture, left, top, side)
-    name = max(2.4, NAME_SIZE * (0.35 + 0.65 * scale))
+    name = max(SMALLEST_NAME, NAME_SIZE * (0.35 + 0.65 * scale))
     base = top + side + 1.25 * name
     yield Words(
         gesture.label, (left, base), fit_size(gesture.label, name, cell, bold=True), bold=True
     )
-    small = max(1.9, MEANING_SIZE * (0.4 + 0.6 * scale))
+    small = max(SMALLEST_MEANING, MEANING_SIZE * (0.4 + 0.6 * scale))
     for line in wrap(describe_strokes(transcribe_gesture(gesture)), small, cell, 2):
         base += 1.35 * small
         yield Words(line, (left, base), small, grey=True)

@@ -15,7 +15,7 @@ from app.recognition import (
     PoseSequence,
     Recognizer,
 )
-from app.recognition.decision.references import MAX_GESTURES_TRAVERSED
+from app.recognition.decision.references import MOST_DEMONSTRATIONS_TRAVERSED
 from app.recognition.gestures.switches import Switches
 from app.recognition.poses.landmarks import other_side
 from app.recognition.poses.sequence import FloatArray
@@ -187,7 +187,7 @@ def turned_by(angle: float, shape: Shape) -> Shape:
 
 
 def test_among_many_gestures_each_is_taken_as_shown() -> None:
-    count = MAX_GESTURES_TRAVERSED + 1
+    count = MOST_DEMONSTRATIONS_TRAVERSED + 1
     angles = 2 * np.pi * np.arange(count) / count
     many = taught(**{f"wedge {n}": turned_by(angles[n], wedge) for n in range(count)})
     result = many.recognize(recording(turned_by(angles[40], wedge)))

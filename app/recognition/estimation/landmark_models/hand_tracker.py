@@ -146,7 +146,7 @@ class HandTracker:
         self.reset()
 
     def reset(self) -> None:
-        """Reset the tracking."""
+        """Reset the tracking; what `examine` has noted stays for `adopt`."""
         self._tracked: tuple[SeenHand, ...] = ()
         self._most = MOST_HANDS
         self._until_palms = 0
