@@ -7,7 +7,7 @@ from pathlib import Path
 import jsonschema
 import pytest
 
-from app.cli.recognition_report import RecognitionReport
+from app.cli.recognize import RecognitionReport
 from tests.command_line import OsgStudio
 from tests.conftest import ROOT
 from tests.published_schemas import RECOGNITION_REPORT

@@ -9,8 +9,12 @@ from collections import defaultdict
 from collections.abc import Sequence
 from functools import lru_cache
 
-from app.api.http.schemas.gestures import DemonstrationFaultView, NewDemonstration, SourceView
-from app.api.http.schemas.recognitions import GestureTrial
+from app.api.http.schemas.gestures import (
+    DemonstrationFaultView,
+    GestureTrial,
+    NewDemonstration,
+    SourceView,
+)
 from app.api.http.schemas.values import NONE_EXPECTED
 from app.api.services.recording_cache import RecordingFile, load_recording, whole_recording
 from app.api.services.running_studio import Studio

@@ -17,9 +17,16 @@ from app.api.http.problems import ProblemError, file_responses, problem_response
 from app.api.http.schemas import clips as schemas
 from app.api.http.schemas.values import SoFar, TriggerLanguage
 from app.api.ingest.fields import UploadFields
-from app.api.ingest.intake import client_of, inspect, joined, require_place_in_queue, store
+from app.api.ingest.intake import (
+    SenderQuota,
+    client_of,
+    inspect,
+    joined,
+    require_place_in_queue,
+    require_quota,
+    store,
+)
 from app.api.ingest.multipart import file_form, least_size, receive_file
-from app.api.ingest.quotas import SenderQuota, require_quota
 from app.api.services.clip_responses import shows_pictures, view_clip
 from app.api.services.clip_takes import find_takes
 from app.api.services.running_studio import CurrentStudio, Studio, computed_briefly
