@@ -57,9 +57,8 @@ from app.api.routes.clips import (
     extraction_jobs,
     mcap_exports,
     resumable_uploads,
-    timelines,
 )
-from app.api.routes.gestures import demonstrations, gestures, previews
+from app.api.routes.gestures import gestures, previews
 from app.api.routes.languages import (
     checks,
     choices,
@@ -151,7 +150,6 @@ def _build_routes() -> tuple[BaseRoute, ...]:
         clip_lists.router,
         clips.router,
         resumable_uploads.router,
-        timelines.router,
         mcap_exports.router,
         extraction_jobs.router,
         languages.router,
@@ -165,7 +163,6 @@ def _build_routes() -> tuple[BaseRoute, ...]:
         invited.router,
         choices.router,
         gestures.router,
-        demonstrations.router,
         previews.router,
         recognitions.router,
         samples.router,

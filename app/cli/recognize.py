@@ -24,7 +24,7 @@ from app.evaluation.confusion import NONE
 from app.recognition import Language, Recognition, Recognizer, Recording, Take
 from app.recognition.errors import OsgError
 from app.recognition.explanation.context import RecognitionContext
-from app.recognition.explanation.explanation import Explanation, explain
+from app.recognition.explanation.explanation import explain
 from app.recognition.gestures.profile import PROFILES, ProfileName
 from app.recognition.recording.chapters import tell_chapters
 from app.recognition.recording.extraction import explain_missing_salutes
@@ -132,8 +132,17 @@ def show_results(
         if expected is not None and expected != NONE
     ]
     if as_json:
-        name = recognizer.language.name
-        report = build_report(str(path), name, recognizer.profile, results, explanations)
+        report = {
+            "clip": str(path),
+            "language": recognizer.language.name,
+            "profile": recognizer.profile,
+            "takes": [
+                {"start": take.start, "end": take.end, "closed": take.closed}
+                | result.to_dict()
+                | ({} if why is None else {"explanation": why.to_dict()})
+                for (take, result), why in zip_longest(results, explanations)
+            ],
+        }
         typer.echo(json.dumps(report, allow_nan=False))
         return
     for (take, result), explanation in zip_longest(results, explanations):
@@ -204,34 +213,6 @@ class RecognitionReport(BaseModel):
     profile: ProfileName
     """The set of voters."""
     takes: list[TakeEntry]
-
-
-def build_report(
-    clip: str,
-    language: str,
-    profile: str,
-    results: Sequence[tuple[Take, Recognition]],
-    explanations: Sequence[Explanation],
-) -> dict[str, Any]:
-    """Build the JSON object; `explanations` may be empty."""
-    return {
-        "clip": clip,
-        "language": language,
-        "profile": profile,
-        "takes": [
-            report_take(take, result, explanation)
-            for (take, result), explanation in zip_longest(results, explanations)
-        ],
-    }
-
-
-def report_take(
-    take: Take, result: Recognition, explanation: Explanation | None = None
-) -> dict[str, Any]:
-    """Build the JSON object of one recognised take."""
-    span = {"start": take.start, "end": take.end, "closed": take.closed}
-    explained = {} if explanation is None else {"explanation": explanation.to_dict()}
-    return span | result.to_dict() | explained
 
 
 def save_bag(

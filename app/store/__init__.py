@@ -3,9 +3,9 @@
 from app.store.audit import AuditStore
 from app.store.clips import ClipQuery, ClipStore, ClipWithJob
 from app.store.data_folder import FolderLock, identity_of
-from app.store.database import Database
-from app.store.errors import (
+from app.store.database import (
     Conflict,
+    Database,
     InvitationClosed,
     NotFound,
     StoreError,

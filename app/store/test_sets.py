@@ -8,8 +8,7 @@ from dataclasses import dataclass
 
 from sqlmodel import Session, col, delete, select, update
 
-from app.store.database import DatabaseStore
-from app.store.errors import NotFound, StoreError
+from app.store.database import DatabaseStore, NotFound, StoreError
 from app.store.models import Clip, LabelledResult, LabelledTake, PracticeTake, RecognitionRecord
 
 MOST_PRACTISED = 5000

@@ -29,8 +29,7 @@ from sqlmodel import Session, col, delete, or_, select
 
 from app.recognition.text.atomic_files import PRIVATE, replace_file
 from app.recognition.text.look_alikes import skeleton
-from app.store.database import Database, DatabaseStore
-from app.store.errors import NotFound, StoreUnavailable
+from app.store.database import Database, DatabaseStore, NotFound, StoreUnavailable
 from app.store.models import SignIn, now
 
 LIFETIME: Final = timedelta(days=30)

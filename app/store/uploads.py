@@ -14,7 +14,7 @@ from types import MappingProxyType
 
 from app.recognition.text.atomic_files import write_atomically
 from app.store.atomic_files import sync_directory
-from app.store.errors import NotFound
+from app.store.database import NotFound
 from app.store.models import OWN_ID, new_id, now
 
 ACTIVE = timedelta(hours=1)

@@ -23,7 +23,7 @@ from app.recognition.preprocessing.salience import find_salient_landmarks
 from app.recognition.text.wording import humanize
 from app.recognition.triggers.trigger import SALUTE, Trigger
 from app.ui.camera import CUBE, FLAT, CameraPose, ease
-from app.ui.direction_marks import mark_direction, mark_gesture
+from app.ui.charts import mark_direction, mark_gesture
 from app.ui.filmstrip import MAX_FRAMES, Filmstrip
 from app.ui.geometry import CubeGeometry
 from app.ui.loopback_server import quiet, start_server

@@ -32,8 +32,7 @@ from app.recognition import Gesture
 from app.store import Invitation, require_open
 from app.store.invitations import closed
 from app.store.models import VIDEO
-from app.ui.charts import data_url
-from app.ui.direction_marks import mark_gesture
+from app.ui.charts import data_url, mark_gesture
 
 router = APIRouter(prefix="/invited", tags=["invitations"])
 

@@ -30,7 +30,7 @@ from app.recognition.triggers.trigger import SALUTE, Trigger
 from app.store import DemonstrationSource, JobStatus, LanguageState
 
 SAME_TAKE = 0.5
-"""Share of a take that a demonstration must cover to count as the same."""
+"""Share of a take that a demonstration, or a labelled take, must cover to count as the same."""
 
 CACHED_CLIPS = 512
 """Number of clips whose outlines and faults are cached: the demonstrations of several large

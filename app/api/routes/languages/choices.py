@@ -31,8 +31,7 @@ from app.recognition.health.choice import (
 )
 from app.resources import known_signs_file
 from app.store import LanguageState, NotFound
-from app.ui.charts import data_url
-from app.ui.direction_marks import mark_gesture
+from app.ui.charts import data_url, mark_gesture
 
 MOST_COMPARED = 300
 """Most demonstrations of a language and candidates: each is compared with every gesture, for

@@ -15,8 +15,7 @@ from app.api.services.stored_recognitions import load_known
 from app.recognition import Recognizer
 from app.recognition.explanation.context import KnownTakes
 from app.store import InvitationState, InvitedTake, NotFound
-from app.ui.charts import data_url
-from app.ui.direction_marks import mark_gesture
+from app.ui.charts import data_url, mark_gesture
 from app.ui.qr_code import draw_qr_code
 
 router = APIRouter(prefix="/languages/{language_id}/invitations", tags=["invitations"])
