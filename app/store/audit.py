@@ -17,7 +17,7 @@ from filelock import FileLock
 from sqlalchemy.exc import SQLAlchemyError
 from sqlmodel import col, select
 
-from app.store.atomic_files import sync_directory
+from app.recognition.text.atomic_files import sync_directory
 from app.store.database import Database, DatabaseStore, StoreError, StoreUnavailable
 from app.store.models import AuditEntry
 

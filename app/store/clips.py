@@ -15,7 +15,8 @@ from sqlalchemy import exists, or_
 from sqlalchemy.exc import IntegrityError
 from sqlmodel import Session, col, func, select
 
-from app.store.atomic_files import PARTIAL_SUFFIX, publish_copy, sync_directory
+from app.recognition.text.atomic_files import sync_directory
+from app.store.atomic_files import PARTIAL_SUFFIX, publish_copy
 from app.store.clip_folder import ClipFolder
 from app.store.database import Database, DatabaseStore, NotFound
 from app.store.models import UPRIGHT, VIDEO, Clip, Job, JobStatus, new_id, now

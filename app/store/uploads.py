@@ -12,8 +12,7 @@ from itertools import chain
 from pathlib import Path
 from types import MappingProxyType
 
-from app.recognition.text.atomic_files import write_atomically
-from app.store.atomic_files import sync_directory
+from app.recognition.text.atomic_files import sync_directory, write_atomically
 from app.store.database import NotFound
 from app.store.models import OWN_ID, new_id, now
 
