@@ -23,8 +23,7 @@ from app.cli.check import check
 from app.cli.demonstrations import define, demonstrations_command, trigger
 from app.cli.evaluate import evaluate
 from app.cli.extract import extract
-from app.cli.language_files import code, convert, samples, slate
-from app.cli.phrase import phrase
+from app.cli.language_files import code, convert, phrase, samples, slate
 from app.cli.recognize import recognize
 from app.cli.robots.robot import robot, split_ros_arguments
 from app.cli.terminal import describe_error

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import shutil
 from pathlib import Path
 from typing import Annotated
@@ -9,14 +10,18 @@ from typing import Annotated
 import typer
 
 from app.cli.terminal import tell
-from app.recognition import Language
+from app.recognition import Language, LanguageError
 from app.recognition.errors import OsgError, explain_missing_package
-from app.recognition.language.export_format import FileFormat
+from app.recognition.language.export_format import FileFormat, from_reference, is_reference
 from app.recognition.language.file import short_code
-from app.recognition.language.osg_reference import from_reference, is_reference
+from app.recognition.phrases.grammar import Grammar
+from app.recognition.phrases.parser import PhraseEvent, PhraseParser
 from app.recognition.triggers.trigger import SALUTE
 from app.resources import samples_dir
 from app.robot.active_language import ActiveLanguage
+
+NOT_COMPLETE = 1
+"""Exit code when the gestures are not a complete message."""
 
 
 def code(
@@ -132,3 +137,58 @@ def read_language(source: Path) -> Language:
     if is_reference(content):
         return from_reference(content, source.stem)
     return Language.from_json(content)
+
+
+def phrase(
+    file: Annotated[Path, typer.Argument(metavar="FILE.json", help="Language file with phrases.")],
+    gestures: Annotated[
+        list[str] | None,
+        typer.Argument(metavar="[LABEL]...", help="Labels of the gestures, in order."),
+    ] = None,
+    as_json: Annotated[
+        bool, typer.Option("--json", help="Print one JSON object for each event.")
+    ] = False,
+) -> None:
+    """Interpret a sequence of gestures; without gestures, list an example of each phrase.
+
+    The exit code is 1 when the gestures are not a complete message.
+    """
+    language = Language.load(file)
+    if language.grammar is None or not language.grammar.phrases:
+        raise LanguageError(
+            f"{file} has no phrases: add some in the studio under Phrases", "/grammar"
+        )
+    if not gestures:
+        _list_phrases(language.grammar, as_json=as_json)
+        return
+    for label in gestures:
+        language.gesture(label)  # raises an error for an unknown label
+    events = simulate_phrase(language.grammar, gestures)
+    for event in events:
+        if as_json:
+            typer.echo(json.dumps(event.to_dict(), allow_nan=False))
+        elif event.mission is None:
+            tell(event.text)
+        else:
+            typer.echo(event.mission.spoken)
+    if not any(event.mission for event in events):
+        raise typer.Exit(NOT_COMPLETE)
+
+
+def simulate_phrase(grammar: Grammar, gestures: list[str]) -> list[PhraseEvent]:
+    """Parse gestures without pauses between them, followed by a pause that ends the message.
+
+    All gestures have the time 0.
+    """
+    parser = PhraseParser(grammar)
+    events = [event for label in gestures for event in parser.feed(label, 0.0, 0.0)]
+    return [*events, *parser.expire(2 * grammar.timeout)]
+
+
+def _list_phrases(grammar: Grammar, *, as_json: bool) -> None:
+    for each in grammar.phrases:
+        shown = grammar.example(each)
+        if as_json:
+            typer.echo(json.dumps({"phrase": each.name, "example": list(shown)}))
+        else:
+            typer.echo(f"{each.name}: {' '.join(shown)}")

@@ -1,4 +1,8 @@
-"""Scene of the space-time cube: video plane, skeleton, trails and back wall in viser."""
+"""Scene of the space-time cube: video plane, skeleton, trails and back wall in viser.
+
+Blue means "chosen" and orange "expected" throughout: the pair is distinct for every common kind of
+colour blindness, and its meaning is always written as well.
+"""
 
 from __future__ import annotations
 

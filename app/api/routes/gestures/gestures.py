@@ -1,7 +1,7 @@
 """Routes of a language's gestures and of their demonstrations: add, change, remove, draw.
 
-A gesture of which demonstrations are changed is addressed by ``?label=``, because a label can be
-any text.
+A gesture is addressed by ``?label=``, because browsers resolve ``.`` and ``..`` in a path before
+they send it. The label as the last part of the path works too, for every other label.
 """
 
 from __future__ import annotations

@@ -1,4 +1,7 @@
-"""Routes of what a language's report says: its check, two gestures side by side, its phrases."""
+"""Routes of what is found out about a language: health report, pair difference, phrases.
+
+The report is one job per revision, with progress events and cancel.
+"""
 
 from __future__ import annotations
 
