@@ -11,13 +11,13 @@ from app import store
 from app.api.http.problems import ProblemError
 from app.api.http.schemas.gestures import GestureTrial, RecognitionRequest, RecognitionView
 from app.api.services.clip_responses import shows_pictures
-from app.api.services.clip_takes import find_takes
 from app.api.services.demonstration_sources import (
     LeftOut,
     OwnDemonstrations,
     count_triggers_in_clip,
     faults_of_language,
     find_sources,
+    find_takes,
     sources_in,
 )
 from app.api.services.gesture_edits import change_gesture_of, demonstration_at

@@ -21,8 +21,7 @@ from app.api.http.schemas.values import (
 )
 from app.api.jobs.job import Job, Report, events_about, run_task
 from app.api.services.clip_responses import shows_pictures
-from app.api.services.clip_takes import find_takes
-from app.api.services.demonstration_sources import LeftOut, OwnDemonstrations
+from app.api.services.demonstration_sources import LeftOut, OwnDemonstrations, find_takes
 from app.api.services.running_studio import Studio
 from app.api.services.stored_recognitions import WITHOUT
 from app.api.workers.tasks import TakeToRecognize, TestRun

@@ -28,7 +28,7 @@ from app.api.ingest.intake import (
 )
 from app.api.ingest.multipart import file_form, least_size, receive_file
 from app.api.services.clip_responses import shows_pictures, view_clip
-from app.api.services.clip_takes import find_takes, trigger_of
+from app.api.services.demonstration_sources import find_takes, trigger_of
 from app.api.services.running_studio import CurrentStudio, Studio, computed_briefly
 from app.api.workers.pictures import thumbnails_in
 from app.clip_sources.source import MADE_VIDEO
