@@ -57,30 +57,24 @@ from app.api.routes.clips import (
     extraction_jobs,
     mcap_exports,
     resumable_uploads,
-    timelines,
 )
-from app.api.routes.gestures import demonstrations, gestures, previews
+from app.api.routes.gestures import gestures, previews
 from app.api.routes.languages import (
     checks,
     choices,
     invitations,
     language_files,
-    language_settings,
     languages,
-    pair_differences,
-    phrases,
     practice,
     revisions,
-    slates,
     take_tables,
     test_sets,
-    triggers,
 )
 from app.api.routes.recognitions import recognitions
 from app.api.services.identities import Identities, check_tokens
 from app.api.services.invited_takes import settle_takes
 from app.api.services.running_studio import check_store, open_studio
-from app.api.viser_workspaces import playback_socket, relay
+from app.api.viser_workspaces import relay
 from app.api.viser_workspaces import routes as workspaces
 from app.settings import Settings
 from app.store import StoreUnavailable
@@ -156,7 +150,6 @@ def _build_routes() -> tuple[BaseRoute, ...]:
         clip_lists.router,
         clips.router,
         resumable_uploads.router,
-        timelines.router,
         mcap_exports.router,
         extraction_jobs.router,
         languages.router,
@@ -168,14 +161,8 @@ def _build_routes() -> tuple[BaseRoute, ...]:
         practice.router,
         invitations.router,
         invited.router,
-        slates.router,
-        language_settings.router,
-        triggers.router,
-        pair_differences.router,
         choices.router,
         gestures.router,
-        demonstrations.router,
-        phrases.router,
         previews.router,
         recognitions.router,
         samples.router,
@@ -183,7 +170,6 @@ def _build_routes() -> tuple[BaseRoute, ...]:
         sign_in.router,
         audit.router,
         workspaces.router,
-        playback_socket.router,
         live.router,
     ):
         api.include_router(router)

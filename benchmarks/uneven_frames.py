@@ -2,8 +2,8 @@
 
 A gesture of the sample languages is shown again and again, `PAUSE` seconds apart; the listener sees
 the frames that are due at uneven steps (exponential) or even ones, with their true times. For each
-rate: right and wrong takes, with the rule of `app.recognition.recording.unseen` and without. Then
-the longest gap that a take may have, chosen with each gesture left out in turn: the largest at
+rate: right and wrong takes, with the rule of `app.recognition.recording.recording` and without.
+Then the longest gap that a take may have, chosen with each gesture left out in turn: the largest at
 which no wrong take of the other gestures reaches from one showing into the next.
 
     python -m benchmarks.uneven_frames --showings 480
@@ -39,9 +39,9 @@ import cv2
 import numpy as np
 
 from app.recognition import PoseSequence, Recording, record
+from app.recognition.recording.recording import LONGER_HELD, find_missable
 from app.recognition.recording.salute import HOLD_SECONDS
 from app.recognition.recording.trimming import SETTING_OUT, Span
-from app.recognition.recording.unseen import LONGER_HELD, find_missable
 from app.robot.active_language import ActiveLanguage
 from app.robot.events import TakeRecognized
 from app.robot.listeners.language_listener import create_listener

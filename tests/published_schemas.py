@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from app.cli.recognition_report import RecognitionReport
+from app.cli.recognize import RecognitionReport
 from app.recognition.language.file_schema import LanguageDocument
 from app.robot.event_messages import MESSAGES
 from tests.conftest import ROOT

@@ -5,6 +5,5 @@ file, a topic of recorded keypoints without models.
 """
 
 from app.bags.bag_kind import bag_and_topic
-from app.bags.extraction import holds_keypoints, record_bag
-from app.bags.skeleton_video import show_recording
+from app.bags.extraction import holds_keypoints, record_bag, show_recording
 from app.bags.staging import is_bag

@@ -1,4 +1,4 @@
-"""Commands ``define`` and ``demonstrations``: gestures of a language from clips."""
+"""Commands ``define``, ``demonstrations`` and ``trigger``: parts of a language from clips."""
 
 from __future__ import annotations
 
@@ -21,12 +21,13 @@ from app.cli.clip_argument import (
 )
 from app.cli.terminal import tell
 from app.recognition import Gesture, GestureError, Language, Recording, Take
+from app.recognition.errors import OsgError, TriggerError
 from app.recognition.explanation.demonstration_faults import find_demonstration_faults
 from app.recognition.gestures.demonstration import MAX_DEMONSTRATIONS
 from app.recognition.language.language import require_distinct_labels
 from app.recognition.poses.frame import HandShape
 from app.recognition.text.look_alikes import compose
-from app.recognition.triggers.trigger import SALUTE
+from app.recognition.triggers.trigger import NO_TRIGGER, SALUTE, ArmPose, Trigger
 
 demonstrations_command = typer.Typer(
     help="Demonstrations of a gesture: list, add, remove.", no_args_is_help=True
@@ -255,3 +256,76 @@ def demonstration_take(
             f"record it again, or give the range by hand: {demonstration.label}={clip}@START-END"
         )
     return closed[0], read.recording
+
+
+@reads_clips
+def trigger(
+    language: Annotated[
+        Path,
+        typer.Argument(metavar="FILE", help="Language file; a new one is made when missing."),
+    ],
+    pose: Annotated[
+        str | None,
+        typer.Option(
+            metavar="CLIP",
+            help="Clip, or CLIP@START-END, in which the arms are held still: this pose begins and "
+            "ends a take.",
+        ),
+    ] = None,
+    stop: Annotated[
+        str | None, typer.Option(metavar="CLIP", help="With --pose: another pose ends it.")
+    ] = None,
+    gesture: Annotated[
+        str | None,
+        typer.Option(metavar="LABEL", help="A gesture of the language begins and ends a take."),
+    ] = None,
+    stop_gesture: Annotated[
+        str | None, typer.Option(metavar="LABEL", help="With --gesture: another one ends it.")
+    ] = None,
+    salute: Annotated[bool, typer.Option("--salute", help="A Vulcan salute again.")] = False,
+    none: Annotated[
+        bool, typer.Option("--none", help="No trigger: gestures are found anywhere.")
+    ] = False,
+    output: OutputOption = None,
+    *,
+    reading: ClipReading,
+) -> None:
+    """Show what begins and ends a take of a language, or set it: salute, pose, gesture, nothing."""
+    given = sum((pose is not None, gesture is not None, salute, none))
+    lacking = (stop and not pose) or (stop_gesture and not gesture)
+    if given > 1 or lacking:
+        raise OsgError(
+            "give one of --pose CLIP, --gesture LABEL, --salute and --none; --stop CLIP needs "
+            "--pose, and --stop-gesture LABEL needs --gesture"
+        )
+    if not given:
+        typer.echo(Language.load(language).trigger.words)
+        return
+    loaded = Language.load(language) if language.exists() else Language(name=language.stem)
+    chosen = SALUTE if salute else NO_TRIGGER
+    if pose is not None:
+        ends = None if stop is None else read_pose(stop, reading)
+        chosen = Trigger("pose", read_pose(pose, reading), ends)
+    if gesture is not None:
+        chosen = Trigger("gesture", start_label=gesture, stop_label=stop_gesture or "")
+    changed = replace(loaded, trigger=chosen, revision=loaded.revision + language.exists())
+    target = output or language
+    changed.save(target)
+    tell(f"{target}: {chosen.words}")
+
+
+def read_pose(text: str, reading: ClipReading) -> ArmPose:
+    """Read the pose that is held in ``CLIP`` or ``CLIP@START-END``.
+
+    Raises
+    ------
+    TriggerError
+        When no pose is held there, with the clip's name.
+
+    """
+    clip, span = clip_and_span(text)
+    poses = read_clip(clip, reading).recording.poses
+    try:
+        return ArmPose.from_poses(poses if span is None else poses.between(*span))
+    except TriggerError as error:
+        raise TriggerError(f"{text}: {error}") from error

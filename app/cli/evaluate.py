@@ -19,12 +19,9 @@ from app.cli.clip_argument import (
     read_options,
 )
 from app.cli.terminal import progress_bar, tell
-from app.evaluation.confusion import ConfusionMatrix
-from app.evaluation.confusion_chart import confusion_svg
-from app.evaluation.labelled_files import LAYOUTS, labelled_files
-from app.evaluation.labelled_takes import Collection, collect_takes
-from app.evaluation.one_shot import one_shot, recognize_takes
-from app.evaluation.protocols import recognize_variants
+from app.evaluation.confusion import ConfusionMatrix, confusion_svg
+from app.evaluation.labelled_takes import LAYOUTS, Collection, collect_takes, labelled_files
+from app.evaluation.one_shot import one_shot, recognize_takes, recognize_variants
 from app.recognition import Language
 from app.recognition.gestures.profile import PROFILES
 from app.recognition.simulation.variation import Person

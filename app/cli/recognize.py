@@ -1,33 +1,41 @@
-"""Command ``recognize``: the gestures in a clip or a folder of clips, and why they were read."""
+"""Command ``recognize``: the gestures in a clip or folder, as words, JSON, table or MCAP file."""
 
 from __future__ import annotations
 
 import json
+import tempfile
 from collections.abc import Sequence
 from dataclasses import replace
 from itertools import zip_longest
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
+from pydantic import BaseModel, ConfigDict, Field
+from rich.filesize import decimal
 
+from app.bags import bag_and_topic
+from app.bags.export_writer import NamedRecognition, write_bag
 from app.cli.batch import FolderBatch, is_folder_of_clips
 from app.cli.clip_argument import ClipReading, clip_and_span, reads_clips, recognize_clip
-from app.cli.mcap_file import save_bag
-from app.cli.recognition_report import build_report
-from app.cli.terminal import show_explanation, show_recognition, tell
+from app.cli.terminal import progress_bar, show_explanation, show_recognition, tell
+from app.clip_sources import source_of
 from app.evaluation.confusion import NONE
 from app.recognition import Language, Recognition, Recognizer, Recording, Take
 from app.recognition.errors import OsgError
 from app.recognition.explanation.context import RecognitionContext
 from app.recognition.explanation.explanation import explain
-from app.recognition.gestures.profile import PROFILES
+from app.recognition.gestures.profile import PROFILES, ProfileName
 from app.recognition.recording.chapters import tell_chapters
 from app.recognition.recording.extraction import explain_missing_salutes
-from app.recognition.recording.unseen import tell_clock
+from app.recognition.recording.recording import tell_clock
 from app.recognition.spotting import Spotter
+from app.recognition.text.described import DESCRIBED
 from app.recognition.text.wording import ask_twins
 from app.recognition.triggers.trigger import HOLD_SECONDS, SALUTE
+
+Seconds = Annotated[float, Field(ge=0, description="Seconds after the clip's first frame.")]
+
 
 NOTHING_RECOGNISED = 1
 """Exit code when no gesture was recognised."""
@@ -124,8 +132,17 @@ def show_results(
         if expected is not None and expected != NONE
     ]
     if as_json:
-        name = recognizer.language.name
-        report = build_report(str(path), name, recognizer.profile, results, explanations)
+        report = {
+            "clip": str(path),
+            "language": recognizer.language.name,
+            "profile": recognizer.profile,
+            "takes": [
+                {"start": take.start, "end": take.end, "closed": take.closed}
+                | result.to_dict()
+                | ({} if why is None else {"explanation": why.to_dict()})
+                for (take, result), why in zip_longest(results, explanations)
+            ],
+        }
         typer.echo(json.dumps(report, allow_nan=False))
         return
     for (take, result), explanation in zip_longest(results, explanations):
@@ -166,3 +183,86 @@ def explain_absence(
             f"{path}: no take {words} found in {seconds}; hold "
             f"the pose for at least {HOLD_SECONDS:g} s, or give the range: {path}@START-END"
         )
+
+
+class TakeEntry(Recognition):
+    """A take and its recognition. G gestures and V voters are in the order of their lists."""
+
+    model_config = ConfigDict(extra="allow")
+
+    start: Seconds
+    end: Seconds
+    closed: bool
+    """Whether a salute, or the other trigger, ended it."""
+    explanation: dict[str, Any] | None = None
+    """Why, and what would change it; only with --expected."""
+
+
+class RecognitionReport(BaseModel):
+    """What ``osg-studio recognize --json`` prints.
+
+    Programs that read a report ignore keys that they do not know.
+    """
+
+    model_config = ConfigDict(**DESCRIBED, extra="allow")
+
+    clip: str
+    """The file, as it was given."""
+    language: str
+    """The language's name."""
+    profile: ProfileName
+    """The set of voters."""
+    takes: list[TakeEntry]
+
+
+def save_bag(
+    target: Path,
+    clip: Path,
+    reading: ClipReading,
+    recording: Recording,
+    language: Language,
+    expected: str | None,
+    results: Sequence[tuple[Take, Recognition]],
+) -> None:
+    """Write a clip and its recognitions to `target`, completely or not at all.
+
+    Parameters
+    ----------
+    target
+        The MCAP file.
+    clip, reading
+        Source of `recording`, as for `app.cli.clip_argument.read_clip`.
+    recording
+        Landmarks of the clip.
+    language, expected, results
+        The language by which its takes were recognised, the label meant if known, and the takes.
+
+    Raises
+    ------
+    BagError
+        When the package that writes MCAP is not installed.
+
+    """
+    name, revision = language.name, language.revision
+    recognitions = [
+        NamedRecognition(take.stroke_start, take.end, name, revision, result, expected)
+        for take, result in results
+    ]
+    path, named = bag_and_topic(str(clip))
+    with tempfile.TemporaryDirectory(prefix=f".{target.name}-", dir=target.parent) as made:
+        partial = Path(made, "session")
+        options = reading.options(named)
+        source = source_of(path, options.topic)
+        video = source.playable_video(path, options, Path(made, "video"))
+        with progress_bar(target.name) as advance:
+            write_bag(
+                partial,
+                recording,
+                recognitions,
+                video=video,
+                name=path.name,
+                trigger=language.trigger,
+                progress=advance,
+            )
+        partial.replace(target)
+    tell(f"{target}: {decimal(target.stat().st_size)}, opens in Foxglove")

@@ -29,9 +29,9 @@ from app.recognition.preprocessing.holds import (
 from app.recognition.preprocessing.moving_hands import find_moving_hands
 from app.recognition.preprocessing.quality import QualityFault, QualityFaultKind, find_fault
 from app.recognition.preprocessing.repair import Repair, repair_poses
+from app.recognition.recording.recording import describe_unseen, find_pauses
 from app.recognition.recording.segmentation import Take
 from app.recognition.recording.trimming import Span
-from app.recognition.recording.unseen import describe_unseen, find_pauses
 from app.recognition.triggers.trigger import mostly_hang
 from app.recognition.voters.registry import HAND_VOTER_NAMES
 

@@ -24,8 +24,8 @@ from app.recognition.poses.trajectory import Trajectory
 from app.recognition.preprocessing.outliers import measure_body_unit
 from app.recognition.preprocessing.salience import MIN_DISPLACEMENT, measure_displacements
 from app.recognition.recognizer import Recognizer
+from app.recognition.recording.recording import find_unseen
 from app.recognition.recording.trimming import GRID_STEP, Motion, Span, measure_motion, split_pieces
-from app.recognition.recording.unseen import find_unseen
 from app.recognition.triggers.trigger import NO_TRIGGER, Trigger
 
 CONFIDENT = 0.8

@@ -27,9 +27,7 @@ from app.robot.events import (
     TakeRejected,
     VehicleReported,
 )
-from app.robot.listeners.language_listener import create_listener
-from app.robot.listeners.phrase_listener import PhraseListener
-from app.robot.listeners.spotting_listener import SpottingListener
+from app.robot.listeners.language_listener import PhraseListener, SpottingListener, create_listener
 from app.robot.listeners.trigger_listener import LandmarkListener, TriggerListener
 from app.robot.runtime import Runtime
 from app.robot.sources.registry import open_source

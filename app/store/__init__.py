@@ -3,9 +3,9 @@
 from app.store.audit import AuditStore
 from app.store.clips import ClipQuery, ClipStore, ClipWithJob
 from app.store.data_folder import FolderLock, identity_of
-from app.store.database import Database
-from app.store.errors import (
+from app.store.database import (
     Conflict,
+    Database,
     InvitationClosed,
     NotFound,
     StoreError,
@@ -29,10 +29,8 @@ from app.store.models import (
     PracticeTake,
     RecognitionRecord,
 )
-from app.store.practice import PracticeStore
 from app.store.quotas import NO_QUOTA, Quota, QuotaExceeded, QuotaStore, Usage
 from app.store.recognitions import RecognitionStore
-from app.store.sign_ins import SignInStore
-from app.store.test_sets import LabelledTakeStore, TestedTake, TestSetFull
-from app.store.tokens import NamedToken, Role, TokenFile
+from app.store.test_sets import LabelledTakeStore, PracticeStore, TestedTake, TestSetFull
+from app.store.tokens import NamedToken, Role, SignInStore, TokenFile
 from app.store.uploads import Upload, UploadStore

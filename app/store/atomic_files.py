@@ -6,19 +6,10 @@ import os
 import shutil
 from pathlib import Path
 
+from app.recognition.text.atomic_files import sync_directory
+
 PARTIAL_SUFFIX = ".part"
 """Suffix of files that are still being written; a file with it at start is an orphan."""
-
-
-def sync_directory(directory: Path) -> None:
-    """Make the names in `directory` durable; do nothing on systems that cannot open directories."""
-    if os.name != "posix":
-        return
-    descriptor = os.open(directory, os.O_RDONLY)
-    try:
-        os.fsync(descriptor)
-    finally:
-        os.close(descriptor)
 
 
 def publish(partial: Path, target: Path) -> None:

@@ -17,9 +17,8 @@ from filelock import FileLock
 from sqlalchemy.exc import SQLAlchemyError
 from sqlmodel import col, select
 
-from app.store.atomic_files import sync_directory
-from app.store.database import Database, DatabaseStore
-from app.store.errors import StoreError, StoreUnavailable
+from app.recognition.text.atomic_files import sync_directory
+from app.store.database import Database, DatabaseStore, StoreError, StoreUnavailable
 from app.store.models import AuditEntry
 
 MOST_LISTED = 1000

@@ -10,7 +10,7 @@ from threading import Lock
 from weakref import WeakValueDictionary
 
 from app.store.atomic_files import PARTIAL_SUFFIX, publish
-from app.store.errors import NotFound, StoreUnavailable
+from app.store.database import NotFound, StoreUnavailable
 from app.store.models import OWN_ID, new_id
 from app.store.objects import ObjectStore
 from app.store.objects.clip_copies import ClipCopies

@@ -15,10 +15,10 @@ from sqlalchemy import exists, or_
 from sqlalchemy.exc import IntegrityError
 from sqlmodel import Session, col, func, select
 
-from app.store.atomic_files import PARTIAL_SUFFIX, publish_copy, sync_directory
+from app.recognition.text.atomic_files import sync_directory
+from app.store.atomic_files import PARTIAL_SUFFIX, publish_copy
 from app.store.clip_folder import ClipFolder
-from app.store.database import Database, DatabaseStore
-from app.store.errors import NotFound
+from app.store.database import Database, DatabaseStore, NotFound
 from app.store.models import UPRIGHT, VIDEO, Clip, Job, JobStatus, new_id, now
 from app.store.objects import ObjectStore, SharedFolder
 from app.store.objects.clip_copies import ClipCopies

@@ -12,7 +12,7 @@ from typing import Final, Self
 from filelock import FileLock, Timeout
 
 from app.recognition.text.atomic_files import write_atomically
-from app.store.errors import StoreUnavailable
+from app.store.database import StoreUnavailable
 from app.store.models import OWN_ID, new_id
 
 FILE: Final = "server"

@@ -11,8 +11,7 @@ from typing import Final
 from sqlalchemy import ColumnElement, and_, func, not_, or_, update
 from sqlmodel import col, select
 
-from app.store.database import DatabaseStore
-from app.store.errors import InvitationClosed, NotFound, TooManyInvitations
+from app.store.database import DatabaseStore, InvitationClosed, NotFound, TooManyInvitations
 from app.store.models import Invitation, InvitedTake, new_id, now
 from app.store.tokens import TOKEN_BYTES, digest
 

@@ -8,8 +8,7 @@ from datetime import timedelta
 from sqlalchemy import ColumnElement, and_, or_
 from sqlmodel import Session, col, func, select
 
-from app.store.database import Database, DatabaseStore, moment_of
-from app.store.errors import NotFound
+from app.store.database import Database, DatabaseStore, NotFound, moment_of
 from app.store.models import Clip, Job, JobStatus, now
 
 MAX_ATTEMPTS = 3

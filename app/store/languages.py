@@ -9,8 +9,7 @@ from datetime import datetime
 from sqlalchemy.orm import defer
 from sqlmodel import Session, col, delete, func, select
 
-from app.store.database import DatabaseStore
-from app.store.errors import Conflict, NotFound, StoreUnavailable
+from app.store.database import Conflict, DatabaseStore, NotFound, StoreUnavailable
 from app.store.models import (
     Clip,
     DemonstrationSource,

@@ -9,8 +9,7 @@ from sqlalchemy import Function, exists, or_
 from sqlalchemy.orm import aliased
 from sqlmodel import Session, col, delete, func, select
 
-from app.store.database import DatabaseStore, moment_of
-from app.store.errors import StoreError
+from app.store.database import DatabaseStore, StoreError, moment_of
 from app.store.models import (
     Clip,
     LanguageRecord,

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from sqlmodel import col, select
 
-from app.store.database import DatabaseStore
-from app.store.errors import NotFound
+from app.store.database import DatabaseStore, NotFound
 from app.store.models import Clip, LanguageRecord, RecognitionRecord
 from app.store.quotas import NO_QUOTA, Quota
 

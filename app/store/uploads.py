@@ -12,9 +12,8 @@ from itertools import chain
 from pathlib import Path
 from types import MappingProxyType
 
-from app.recognition.text.atomic_files import write_atomically
-from app.store.atomic_files import sync_directory
-from app.store.errors import NotFound
+from app.recognition.text.atomic_files import sync_directory, write_atomically
+from app.store.database import NotFound
 from app.store.models import OWN_ID, new_id, now
 
 ACTIVE = timedelta(hours=1)

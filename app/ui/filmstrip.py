@@ -9,13 +9,11 @@ from threading import Event, Lock, Thread
 
 import cv2
 import numpy as np
-import numpy.typing as npt
 
 from app.recognition.errors import VideoError
+from app.recognition.poses.frame import Image
 from app.recognition.recording.video import read_frames
 from app.ui.charts import encode_jpeg, shrink
-
-Image = npt.NDArray[np.uint8]
 
 MAX_WIDTH = 640
 """Pixels. Larger pictures reduce the frame rate of playback."""

@@ -22,16 +22,14 @@ from app.recognition.preprocessing.holds import find_holds, keep_holds
 from app.recognition.preprocessing.salience import find_salient_landmarks
 from app.recognition.text.wording import humanize
 from app.recognition.triggers.trigger import SALUTE, Trigger
-from app.ui.back_wall import Wall
 from app.ui.camera import CUBE, FLAT, CameraPose, ease
-from app.ui.direction_marks import mark_direction, mark_gesture
+from app.ui.charts import mark_direction, mark_gesture
 from app.ui.filmstrip import MAX_FRAMES, Filmstrip
 from app.ui.geometry import CubeGeometry
 from app.ui.loopback_server import quiet, start_server
 from app.ui.panels import Inspector, TimeCursor
 from app.ui.playback import Playback
-from app.ui.scene import SpaceTimeCube
-from app.ui.scene_theme import DARK, LIGHT
+from app.ui.scene import DARK, LIGHT, SpaceTimeCube, Wall
 
 TRANSITION_SECONDS = 0.45
 TRANSITION_STEPS = 12

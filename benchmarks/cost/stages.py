@@ -35,8 +35,8 @@ from app.recognition.recording.extraction import build_frame_sequence
 from app.recognition.recording.live_segmentation import PeopleInStream
 from app.recognition.recording.salute import best_salute
 from app.robot import create_listener, open_source
+from app.robot.active_language import LanguageWatcher
 from app.robot.events import TakeEvent
-from app.robot.language_watcher import LanguageWatcher
 from app.robot.listeners.trigger_listener import LandmarkListener
 from app.robot.sources.source import Frame, Source
 

@@ -16,8 +16,7 @@ from mcap.writer import Writer
 from app.bags.export_writer import CHANNELS, NamedRecognition, write_bag
 from app.bags.extraction import record_bag
 from app.bags.topic_summary import usable_topics
-from app.evaluation.labelled_files import labelled_files
-from app.evaluation.labelled_takes import collect_takes
+from app.evaluation.labelled_takes import collect_takes, labelled_files
 from app.recognition import Gesture, Language, Recognizer, Recording, takes_in
 from app.recognition.errors import BagError, VideoError
 from tests.api.recordings import recording_of

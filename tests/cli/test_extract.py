@@ -5,8 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from app.evaluation.labelled_files import labelled_files
-from app.evaluation.labelled_takes import collect_takes
+from app.evaluation.labelled_takes import collect_takes, labelled_files
 from app.recognition import Recording
 from tests.command_line import OsgStudio
 from tests.recognition.damaged_clips import write_clip

@@ -11,7 +11,7 @@ import jsonschema
 import numpy as np
 import pytest
 
-from app.cli.recognition_report import RecognitionReport
+from app.cli.recognize import RecognitionReport
 from app.recognition import Gesture, Language
 from app.recognition.gestures.profile import Tuning
 from app.recognition.poses.frame import Hand

@@ -6,7 +6,7 @@ from pathlib import Path
 import jsonschema
 import pytest
 
-from app.cli.recognition_report import RecognitionReport
+from app.cli.recognize import RecognitionReport
 from tests.bags.bag_files import recorded
 from tests.command_line import OsgStudio
 from tests.conftest import ROOT

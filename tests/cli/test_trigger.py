@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from app.cli.clip_argument import spot_takes
-from app.evaluation.labelled_files import LAYOUTS
+from app.evaluation.labelled_takes import LAYOUTS
 from app.recognition import Language, PoseSequence, Recognizer
 from app.recognition.poses.landmarks import POSE_LANDMARKS
 from app.recognition.spotting import Spotter

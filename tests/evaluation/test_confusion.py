@@ -6,8 +6,7 @@ from itertools import permutations
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.evaluation.confusion import NONE, REFUSED, Answer, ConfusionMatrix
-from app.evaluation.confusion_chart import confusion_svg
+from app.evaluation.confusion import NONE, REFUSED, Answer, ConfusionMatrix, confusion_svg
 from app.evaluation.proportion import Share
 
 LABELS = ("circle", "wedge", "<three & more>")

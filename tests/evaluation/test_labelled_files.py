@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from app.evaluation.labelled_files import labelled_files
+from app.evaluation.labelled_takes import labelled_files
 from app.recognition import OsgError
 
 

@@ -7,8 +7,7 @@ import numpy as np
 import pytest
 
 from app.clip_sources import ReadOptions
-from app.evaluation.labelled_files import labelled_files
-from app.evaluation.labelled_takes import collect_takes
+from app.evaluation.labelled_takes import collect_takes, labelled_files
 from app.recognition import Recording
 from app.recognition.poses.skeletons import BODY_25
 from tests.evaluation.takes import drawn_takes

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from app.evaluation.protocols import recognize_variants
+from app.evaluation.one_shot import recognize_variants
 from app.recognition import Language, OsgError
-from app.recognition.language.osg_reference import from_reference, to_reference
+from app.recognition.language.export_format import from_reference, to_reference
 from tests.conftest import ROOT
 from tests.recognition.demonstrations import pool
 from tests.recognition.strategies import circle, line

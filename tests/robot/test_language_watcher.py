@@ -12,7 +12,7 @@ import pytest
 from app.recognition import LanguageError, OsgError
 from app.recognition.gestures.profile import Tuning
 from app.robot import ActiveLanguage
-from app.robot.language_watcher import POLL_INTERVAL, LanguageWatcher
+from app.robot.active_language import POLL_INTERVAL, LanguageWatcher
 from tests.robot.languages import language_of, spoken
 
 PATIENCE = 60.0

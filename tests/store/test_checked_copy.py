@@ -27,7 +27,7 @@ from app.clip_sources import SOURCES
 from app.recognition.errors import OsgError
 from app.store import Clip, ClipStore, Database, LanguageStore
 from app.store.backup import DATABASE, restore_backup, write_backup
-from app.store.backup.rows import OF_A_SERVER
+from app.store.backup.checked_copy import OF_A_SERVER
 from app.store.invitations import LONGEST_DAYS, InvitationStore
 from app.store.models import UPRIGHT, JobStatus, UtcDateTime, new_id, now
 from app.store.tokens import digest

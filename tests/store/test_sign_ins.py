@@ -10,8 +10,7 @@ from sqlmodel import select
 
 from app.store import Database, SignInStore
 from app.store.models import SignIn, now
-from app.store.sign_ins import LIFETIME, MOST_OF_A_NAME, proof_of
-from app.store.tokens import digest
+from app.store.tokens import LIFETIME, MOST_OF_A_NAME, digest, proof_of
 
 
 @pytest.fixture

@@ -11,8 +11,8 @@ import pytest
 from app.recognition import PoseSequence
 from app.recognition.features.trajectory_image import MARGIN, SIZE, draw
 from app.recognition.poses.trajectory import Trajectory
-from app.ui.back_wall import Wall
 from app.ui.geometry import CubeGeometry
+from app.ui.scene import Wall
 from app.ui.workspace import Range
 from tests.ui.views import view_in
 

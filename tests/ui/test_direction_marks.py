@@ -8,7 +8,7 @@ import numpy.typing as npt
 from app.recognition import Gesture
 from app.recognition.features.trajectory_image import SIZE
 from app.recognition.recording.segmentation import takes_in
-from app.ui.direction_marks import mark_direction, mark_gesture
+from app.ui.charts import mark_direction, mark_gesture
 from tests.api.recordings import recording_of
 
 

@@ -11,10 +11,8 @@ import viser
 
 from app.recognition.features.trajectory_image import draw
 from app.recognition.poses.trajectory import Trajectory
-from app.ui.back_wall import Wall
 from app.ui.geometry import CubeGeometry
-from app.ui.scene import SpaceTimeCube, text_image
-from app.ui.scene_theme import DARK, LIGHT
+from app.ui.scene import DARK, LIGHT, SpaceTimeCube, Wall, text_image
 from app.ui.workspace import Range
 from tests.ui.views import view_in
 

@@ -8,7 +8,7 @@ import pytest
 
 from app.resources import static_dir
 from app.ui.panel_style import PANEL_STYLE
-from app.ui.scene_theme import DARK, LIGHT, Theme, map_time_colours, to_linear
+from app.ui.scene import DARK, LIGHT, Theme, map_time_colours, to_linear
 
 
 def test_time_runs_from_blue_to_orange() -> None:

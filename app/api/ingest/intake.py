@@ -7,22 +7,22 @@ from collections.abc import AsyncIterator, Sequence
 from contextlib import asynccontextmanager
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
 
-from fastapi import Request
+from fastapi import Depends, Request
 from starlette.concurrency import run_in_threadpool
 
 from app.api.http.problems import ProblemError
 from app.api.http.schemas.clips import ClipAccepted
 from app.api.ingest.fields import UploadFields
 from app.api.ingest.multipart import require_space
-from app.api.ingest.quotas import quota_of
+from app.api.services.identities import identity_of
 from app.api.services.running_studio import Studio
 from app.api.workers.tasks import Join
 from app.api.workers.worker_messages import Failed, Probed
 from app.clip_sources import ReadOptions, sources_of_upload, supported_kinds
 from app.recognition.recording.file_kinds import HEAD_BYTES, find_file_kind
-from app.store import Clip, Upload
+from app.store import Clip, Quota, Upload
 
 UNSUPPORTED, STORAGE_UNAVAILABLE = "unsupported_media_type", "storage_unavailable"
 
@@ -247,3 +247,29 @@ def _refusal(probed: Failed, name: str) -> ProblemError:
 def _head(path: Path) -> bytes:
     with path.open("rb") as file:
         return file.read(HEAD_BYTES)
+
+
+def quota_of(request: Request) -> Quota:
+    """Return the quota of a request's sender; nothing limits it if no token is needed."""
+    identity = identity_of(request.scope)
+    return Quota(identity.name, identity.quota_bytes, identity.quota_clips)
+
+
+SenderQuota = Annotated[Quota, Depends(quota_of)]
+"""Type of a route's parameter that receives the quota of the request's sender."""
+
+
+async def require_quota(quota: Quota, studio: Studio, size: int) -> None:
+    """Refuse, early, a clip of at least `size` bytes that exceeds its sender's quota.
+
+    The quota is checked again when the clip or its upload is stored.
+
+    Raises
+    ------
+    QuotaExceeded
+        When it does not fit, even if what the sender deleted is purged.
+
+    """
+    if quota.bytes or quota.clips:
+        kept = await run_in_threadpool(studio.quotas.usage, quota.owner, deleted=False)
+        quota.require(kept, size, clips=1)

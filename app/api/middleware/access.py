@@ -33,8 +33,7 @@ from app.settings import Settings, is_loopback
 from app.store import InvitationStore, SignInStore, StoreError
 from app.store.invitations import closed
 from app.store.models import SignIn
-from app.store.sign_ins import LIFETIME
-from app.store.tokens import TokensUnavailable, digest
+from app.store.tokens import LIFETIME, TokensUnavailable, digest
 
 logger = logging.getLogger(__name__)
 

@@ -11,8 +11,8 @@ from fastapi import Depends, Response
 
 from app.api.http.revisions import ExpectedRevision, Revision
 from app.api.http.schemas.languages import LanguageView
-from app.api.ingest.quotas import SenderQuota
-from app.api.services.clip_takes import trigger_of
+from app.api.ingest.intake import SenderQuota
+from app.api.services.demonstration_sources import trigger_of
 from app.api.services.language_responses import announce, save_revision
 from app.api.services.running_studio import CurrentStudio, Studio
 from app.recognition import Language

@@ -15,9 +15,16 @@ from starlette.concurrency import run_in_threadpool
 from app.api.http.problems import ProblemError, problem_responses
 from app.api.http.schemas import invitations as schemas
 from app.api.http.schemas.values import Diver, Label
-from app.api.ingest.intake import UNSUPPORTED, Inspected, inspect, require_place_in_queue, store
+from app.api.ingest.intake import (
+    UNSUPPORTED,
+    Inspected,
+    SenderQuota,
+    inspect,
+    require_place_in_queue,
+    require_quota,
+    store,
+)
 from app.api.ingest.multipart import Upload, display_name, file_form, least_size, receive_file
-from app.api.ingest.quotas import SenderQuota, require_quota
 from app.api.services.gesture_edits import gesture_in
 from app.api.services.invited_takes import Returned, answer_question, require_unshown
 from app.api.services.running_studio import CurrentStudio, Studio, computed_briefly, edited
@@ -25,8 +32,7 @@ from app.recognition import Gesture
 from app.store import Invitation, require_open
 from app.store.invitations import closed
 from app.store.models import VIDEO
-from app.ui.charts import data_url
-from app.ui.direction_marks import mark_gesture
+from app.ui.charts import data_url, mark_gesture
 
 router = APIRouter(prefix="/invited", tags=["invitations"])
 

@@ -13,9 +13,8 @@ from app.api.http.problems import ProblemError, problem_responses
 from app.api.http.schemas.clips import ClipAccepted
 from app.api.http.schemas.languages import LanguageView
 from app.api.http.schemas.values import Body, View
-from app.api.ingest.intake import inspect, require_place_in_queue, store
+from app.api.ingest.intake import SenderQuota, inspect, require_place_in_queue, require_quota, store
 from app.api.ingest.multipart import display_name
-from app.api.ingest.quotas import SenderQuota, require_quota
 from app.api.services.language_documents import draft_of
 from app.api.services.language_responses import announce, save_language
 from app.api.services.running_studio import CurrentStudio

@@ -15,8 +15,7 @@ from starlette.types import Scope
 from app.settings import Settings
 from app.store import NamedToken, Role, StoreUnavailable, TokenFile
 from app.store.models import SignIn
-from app.store.sign_ins import proof_of
-from app.store.tokens import ADMINISTRATOR, TokensUnavailable, is_reserved
+from app.store.tokens import ADMINISTRATOR, TokensUnavailable, is_reserved, proof_of
 
 logger = logging.getLogger(__name__)
 

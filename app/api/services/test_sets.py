@@ -4,27 +4,155 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator, Sequence
-from typing import Any
+from typing import Annotated, Any
+
+from pydantic import Field
 
 from app import __version__, store
 from app.api.http.problems import ProblemError, problem_of
-from app.api.http.schemas import test_sets as schemas
-from app.api.http.schemas.values import NONE_EXPECTED
+from app.api.http.schemas.values import (
+    NONE_EXPECTED,
+    Body,
+    ExpectedGestureView,
+    Identifier,
+    RequiredGesture,
+    Seconds,
+    View,
+)
 from app.api.jobs.job import Job, Report, events_about, run_task
 from app.api.services.clip_responses import shows_pictures
-from app.api.services.clip_takes import find_takes
-from app.api.services.demonstration_sources import LeftOut, OwnDemonstrations
+from app.api.services.demonstration_sources import LeftOut, OwnDemonstrations, find_takes
 from app.api.services.running_studio import Studio
 from app.api.services.stored_recognitions import WITHOUT
 from app.api.workers.tasks import TakeToRecognize, TestRun
 from app.api.workers.worker_messages import Failed, Finished, Progress, RecognizedTake
 from app.evaluation.proportion import Share
+from app.recognition.decision.result import Pair
 from app.recognition.health.finding import TestedGesture
 from app.recognition.recording.clip_range import find_clip_range
+from app.store.test_sets import MOST_TAKES
+
+
+class LabelledTakeDraft(RequiredGesture):
+    """A clip, or a range of it, with the gesture that it shows."""
+
+    clip_id: Identifier
+    start: Seconds | None = None
+    """Null, with `end`: every take of the clip, or all of it."""
+    end: Seconds | None = None
+
+
+class LabelledTakesDraft(Body):
+    """Takes to add to a test set; one that it has gets the new label."""
+
+    takes: Annotated[list[LabelledTakeDraft], Field(min_length=1, max_length=MOST_TAKES)]
+
+
+class LabelledTakeChange(RequiredGesture):
+    """Another label for a take."""
+
+
+class LabelledResultView(View):
+    """How a revision recognises a labelled take."""
+
+    revision: int
+    recognition_id: str | None
+    """Null: it could not be recognised, see `fault`."""
+    label: str | None
+    """Null: a pair, or rejected."""
+    pair: Pair
+    nearest: str | None
+    confidence: float
+    right: bool
+    fault: str | None
+    """Why it could not be recognised, in words."""
+
+
+class LabelledTakeView(ExpectedGestureView):
+    """A take of a test set."""
+
+    id: str
+    clip_id: str
+    clip: str
+    """Name of the clip."""
+    start: float
+    end: float
+    added_by: str
+    """Name of who added it; empty: not known."""
+    demonstration: bool
+    """It is a demonstration of the language, which reads it without that demonstration."""
+    testable: bool
+    """Whether the language has another demonstration of its gesture; null results otherwise."""
+    set_aside: bool
+    """It shows the movement that its gesture had before, and counts for nothing; `PATCH` with its
+    label brings it back."""
+    result: LabelledResultView | None
+    """The newest; null: none yet."""
+    before: LabelledResultView | None
+    """By an older revision than `result`."""
+
+
+class RateView(View):
+    """Rate of right answers, with Wilson's 95 % interval; null without any answer."""
+
+    right: int
+    asked: int
+    """Takes, those of pairs included."""
+    pairs: int
+    """Takes that lie between two gestures: neither right nor a wrong label."""
+    pairs_right: int
+    """Of these, those with the right gesture in the pair."""
+    untestable: int
+    """Takes beside these: the language has no other demonstration of their gesture."""
+    rate: float | None
+    low: float | None
+    high: float | None
+
+
+class NoneRateView(View):
+    """Answers to takes that show none of the gestures."""
+
+    refused: int
+    """Right."""
+    asked_back: int
+    answered: int
+    """Wrong."""
+
+
+class GestureRateView(RateView):
+    """Rate of one gesture."""
+
+    label: str
+
+
+class TestSetView(View):
+    """The test set of a language, with the newest result of each take."""
+
+    __test__ = False
+
+    language_id: str
+    revision: int
+    """The language's newest."""
+    takes: list[LabelledTakeView]
+    overall: RateView
+    """A refusal is right of a take that shows none of the gestures."""
+    gestures: list[GestureRateView]
+    """The lowest rate first."""
+    none: NoneRateView
+    better: list[str]
+    """Ids of takes that are answered better than before."""
+    worse: list[str]
+    """Ids of takes that are answered worse than before: right is better than a pair with the right
+    gesture, which is better than anything else."""
+    upgraded: bool
+    """Whether the results before are of another version of the program, which may answer otherwise
+    too."""
+    waiting: int
+    """Testable takes without a result of the newest revision."""
 
 
 def add_labelled(
-    studio: Studio, language_id: str, drafts: Sequence[schemas.LabelledTakeDraft], sender: str
+    studio: Studio, language_id: str, drafts: Sequence[LabelledTakeDraft], sender: str
 ) -> None:
     """Add takes to the test set of a language in the name of a sender.
 
@@ -112,22 +240,22 @@ def list_waiting(
     ]
 
 
-def _is_waiting(take: schemas.LabelledTakeView, revision: int) -> bool:
+def _is_waiting(take: LabelledTakeView, revision: int) -> bool:
     return take.testable and (take.result is None or take.result.revision != revision)
 
 
-def view_test_set(studio: Studio, state: store.LanguageState) -> schemas.TestSetView:
+def view_test_set(studio: Studio, state: store.LanguageState) -> TestSetView:
     """Return the test set of a language, as of its newest revision."""
     takes = [view for _, _, view in _view_takes(studio, state)]
     counting = [take for take in takes if not take.set_aside]
     counted = [(take, take.result) for take in takes if take.testable and take.result is not None]
     compared = [(take, result, take.before) for take, result in counted if take.before is not None]
     gains = {take.id: _worth(take, now) - _worth(take, before) for take, now, before in compared}
-    return schemas.TestSetView(
+    return TestSetView(
         language_id=state.record.id,
         revision=state.revision.revision,
         takes=takes,
-        overall=schemas.RateView(**_rate(counting)),
+        overall=RateView(**_rate(counting)),
         gestures=_rate_gestures(counting),
         none=_rate_none([result for take, result in counted if take.expected_none]),
         better=[each for each, gain in gains.items() if gain > 0],
@@ -184,7 +312,7 @@ def _keep(
 
 
 def _ranges(
-    studio: Studio, draft: schemas.LabelledTakeDraft, state: store.LanguageState
+    studio: Studio, draft: LabelledTakeDraft, state: store.LanguageState
 ) -> Iterator[tuple[float, float]]:
     """Yield start and end of each take that a draft means."""
     recording = studio.recording(draft.clip_id)
@@ -202,7 +330,7 @@ def _ranges(
     )
 
 
-def _worth(take: schemas.LabelledTakeView, result: schemas.LabelledResultView) -> int:
+def _worth(take: LabelledTakeView, result: LabelledResultView) -> int:
     """Return 2 for a right answer, 1 for a pair with the right gesture, 0 for any other answer.
 
     Where no gesture is right, any pair is better than a label.
@@ -213,7 +341,7 @@ def _worth(take: schemas.LabelledTakeView, result: schemas.LabelledResultView) -
 
 def _were_upgraded(
     studio: Studio,
-    compared: Sequence[tuple[schemas.LabelledResultView, schemas.LabelledResultView]],
+    compared: Sequence[tuple[LabelledResultView, LabelledResultView]],
 ) -> bool:
     """Return whether another version of the program gave the oldest results before."""
     pairs = [pair for pair in compared if all(each.recognition_id for each in pair)]
@@ -229,7 +357,7 @@ def _were_upgraded(
     return len(versions) > 1  # Versions up to 0.2.0 stored none.
 
 
-def _rate(takes: Sequence[schemas.LabelledTakeView]) -> dict[str, Any]:
+def _rate(takes: Sequence[LabelledTakeView]) -> dict[str, Any]:
     counted = [(take, take.result) for take in takes if take.testable and take.result is not None]
     share = Share(sum(result.right for _, result in counted), len(counted))
     low, high = share.interval() or (None, None)
@@ -245,23 +373,23 @@ def _rate(takes: Sequence[schemas.LabelledTakeView]) -> dict[str, Any]:
     }
 
 
-def _rate_gestures(takes: Sequence[schemas.LabelledTakeView]) -> list[schemas.GestureRateView]:
+def _rate_gestures(takes: Sequence[LabelledTakeView]) -> list[GestureRateView]:
     """Return the rates of all gestures that takes show, the worst first."""
-    shown: dict[str, list[schemas.LabelledTakeView]] = {}
+    shown: dict[str, list[LabelledTakeView]] = {}
     for take in takes:
         if take.expected is not None:
             shown.setdefault(take.expected, []).append(take)
     rates = [
-        schemas.GestureRateView(label=label, **_rate(own))
+        GestureRateView(label=label, **_rate(own))
         for label, own in shown.items()
         if any(take.result is not None or not take.testable for take in own)
     ]
     return sorted(rates, key=lambda each: each.rate or 0.0)
 
 
-def _rate_none(results: Sequence[schemas.LabelledResultView]) -> schemas.NoneRateView:
+def _rate_none(results: Sequence[LabelledResultView]) -> NoneRateView:
     """Return what became of takes that show none of the gestures."""
-    return schemas.NoneRateView(
+    return NoneRateView(
         refused=sum(result.right for result in results),
         asked_back=sum(result.pair is not None for result in results),
         answered=sum(result.label is not None for result in results),
@@ -296,7 +424,7 @@ def _is_right(take: store.LabelledTake, result: store.LabelledResult) -> bool:
 
 def _view_takes(
     studio: Studio, state: store.LanguageState
-) -> Iterator[tuple[store.LabelledTake, LeftOut, schemas.LabelledTakeView]]:
+) -> Iterator[tuple[store.LabelledTake, LeftOut, LabelledTakeView]]:
     """Yield each take of a language, the demonstrations that it is itself, and what is shown."""
     own = OwnDemonstrations(studio, studio.language(state))
     for tested in studio.labelled.of(state.record.id):
@@ -307,18 +435,18 @@ def _view_takes(
 
 def _view(
     studio: Studio, tested: store.TestedTake, own: OwnDemonstrations, without: LeftOut
-) -> schemas.LabelledTakeView:
+) -> LabelledTakeView:
     take = tested.take
     set_aside = own.show_former(take.expected, take.former)
     is_testable = own.leave_one(take.expected, without) and not set_aside
     results = [
-        schemas.LabelledResultView(
+        LabelledResultView(
             **result.model_dump(exclude={"take_id", "created"}),
             right=_is_right(take, result),
         )
         for result in (_list_valid(studio, tested, without) if is_testable else ())
     ]
-    return schemas.LabelledTakeView(
+    return LabelledTakeView(
         **take.model_dump(exclude={"language_id", "created", "former"}),
         clip=tested.clip,
         demonstration=bool(without),

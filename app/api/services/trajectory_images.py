@@ -9,8 +9,7 @@ from fastapi import Query, Response
 from app.api.http.problems import file_responses
 from app.recognition import Gesture
 from app.recognition.features.png import encode_png
-from app.ui.charts import png
-from app.ui.direction_marks import mark_gesture
+from app.ui.charts import mark_gesture, png
 
 IMAGE_RESPONSES = file_responses("The trajectory image", "image/png")
 

@@ -26,7 +26,7 @@ from app.api.http.websockets import (
     same_origin,
     until_one_ends,
 )
-from app.api.viser_workspaces.workspace_lookup import CurrentWorkspaces, Owner, no_workspace
+from app.api.viser_workspaces.routes import CurrentWorkspaces, Owner, no_workspace
 from app.ui.loopback_server import RELAY_HEADERS
 
 CLIENT: Final = Path(viser.__file__).parent / "client" / "build" / "index.html"

@@ -24,7 +24,7 @@ from uuid import uuid4
 from app.api.workers.executor import COMMAND, PACKAGE_PARENT, ExecutorLost, Lines, Order, TaskFiles
 from app.api.workers.rights import environment_of_workers, line_of
 from app.store.atomic_files import PARTIAL_SUFFIX
-from app.store.errors import StoreUnavailable
+from app.store.database import StoreUnavailable
 from app.store.models import new_id
 from app.store.objects import open_object_store
 

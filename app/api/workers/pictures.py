@@ -7,13 +7,11 @@ from pathlib import Path
 
 import cv2
 import numpy as np
-import numpy.typing as npt
 
 from app.api.workers.worker_messages import MOST_PICTURE_BYTES
 from app.recognition.errors import VideoError
+from app.recognition.poses.frame import Image
 from app.recognition.recording import video
-
-Image = npt.NDArray[np.uint8]
 
 POSTER_SECONDS = 1.0
 """Second of the clip from which its still picture is taken: recordings often begin black or

@@ -45,8 +45,8 @@ from app.recognition import Language, OsgError, Recognizer, Recording
 from app.recognition.errors import LanguageError, ModelError, VideoError
 from app.recognition.estimation.factory import create_estimator
 from app.recognition.health.check import check_health
+from app.recognition.language.export_format import from_reference, is_reference
 from app.recognition.language.file_schema import TriggerEntry, entry_to_trigger
-from app.recognition.language.osg_reference import from_reference, is_reference
 from app.recognition.language.requirements import require_seen_landmarks
 from app.recognition.poses.frame import Body, FrameLandmarks
 from app.recognition.recording.chapters import join_chapters

@@ -26,8 +26,8 @@ from app.robot import (
     TakeRecognized,
     open_source,
 )
+from app.robot.active_language import LanguageWatcher
 from app.robot.commands.replies import Reply
-from app.robot.language_watcher import LanguageWatcher
 from app.robot.publishing.publisher import open_publisher
 from app.robot.runtime import Observer
 from app.robot.sources.live import LiveSource

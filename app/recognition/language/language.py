@@ -19,7 +19,14 @@ from app.recognition.gestures.profile import (
     Tuning,
     find_profile,
 )
-from app.recognition.language.file import name_file, read_content, read_document, write_document
+from app.recognition.language.file import (
+    entry_to_gesture,
+    gesture_to_entry,
+    name_file,
+    read_content,
+    read_document,
+    write_document,
+)
 from app.recognition.language.file_schema import (
     FORMAT,
     MAX_GESTURES,
@@ -30,7 +37,6 @@ from app.recognition.language.file_schema import (
     trigger_to_entry,
     tuning_to_entry,
 )
-from app.recognition.language.gesture_entry import entry_to_gesture, gesture_to_entry
 from app.recognition.language.grammar_entry import entry_to_grammar, grammar_to_entry
 from app.recognition.phrases.grammar import Grammar
 from app.recognition.poses.landmarks import SKELETON

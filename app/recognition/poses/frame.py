@@ -109,7 +109,7 @@ DIGITS = 3
 """Decimals kept: a hundredth of a finger's width, a tenth of a hand model's error."""
 
 KNUCKLES_PER_PALM = 1.2
-"""Palm length over the width of the knuckles, for foreshortened palms (as in `salute`)."""
+"""Palm length over the width of the knuckles, for foreshortened palms."""
 
 MOST_FRAMES = 64
 """Most frames from which a hand's shape is computed, see `choose_frames`: more change no digit."""

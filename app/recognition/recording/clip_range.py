@@ -7,10 +7,9 @@ from dataclasses import dataclass
 
 from app.recognition.errors import AmbiguousRangeError, RangeError
 from app.recognition.poses.sequence import PoseSequence
-from app.recognition.recording.recording import Recording
+from app.recognition.recording.recording import Recording, find_unseen
 from app.recognition.recording.segmentation import Bracket, cut_take, find_brackets
 from app.recognition.recording.trimming import Span
-from app.recognition.recording.unseen import find_unseen
 from app.recognition.triggers.trigger import SALUTE, Trigger
 
 SAME_MOMENT = 1e-3

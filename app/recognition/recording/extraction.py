@@ -25,7 +25,7 @@ from app.recognition.poses.sequence import FloatArray, PoseSequence, join_sequen
 from app.recognition.poses.skeletons import find_missing_landmarks
 from app.recognition.poses.trajectory import TURNED_AWAY, Trajectory
 from app.recognition.recording.people import People, keep_person, see_people
-from app.recognition.recording.recording import Recording, place_hands
+from app.recognition.recording.recording import Recording, place_hands, tell_clock
 from app.recognition.recording.salute import (
     DROPOUT_SECONDS,
     ENTER_SCORE,
@@ -33,7 +33,6 @@ from app.recognition.recording.salute import (
     SHORTEST_TAKE,
     find_held,
 )
-from app.recognition.recording.unseen import tell_clock
 from app.recognition.recording.video import (
     FrameSource,
     Turn,

@@ -17,7 +17,7 @@ from operator import itemgetter
 import numpy as np
 
 from app.recognition.errors import PoseError
-from app.recognition.poses.frame import Hand
+from app.recognition.poses.frame import KNUCKLES_PER_PALM, Hand
 from app.recognition.poses.landmarks import FINGERS, HAND_LANDMARKS
 from app.recognition.poses.sequence import FloatArray
 
@@ -83,9 +83,6 @@ TIP_GAP_RATIO = Condition(1.1, 0.6)
 
 PALM_WIDTH = Condition(0.38, 0.4)
 """Index to little finger knuckle: seen edge-on, angles are unreliable."""
-
-KNUCKLES_PER_PALM = 1.2
-"""Palm length over the width of the knuckles, for foreshortened palms."""
 
 # The same for hands whose fingertips the hand model bends; stricter, since fewer are tested.
 NEARLY_STRAIGHT = Condition(0.75, 0.2)

@@ -15,12 +15,11 @@ from app.recognition.estimation.water import WaterCorrection
 from app.recognition.poses.sequence import PoseSequence
 from app.recognition.preprocessing.repair import repair_poses
 from app.recognition.recording.extraction import Progress, record
-from app.recognition.recording.recording import Recording
+from app.recognition.recording.recording import Recording, find_holes, find_missable
 from app.recognition.recording.salute import LONGEST_TAKE as LONGEST_TAKE
 from app.recognition.recording.salute import SHORTEST_TAKE as SHORTEST_TAKE
 from app.recognition.recording.salute import HeldTrigger
 from app.recognition.recording.trimming import Span, find_stroke
-from app.recognition.recording.unseen import find_holes, find_missable
 from app.recognition.triggers.trigger import HOLD_SECONDS as POSE_SECONDS
 from app.recognition.triggers.trigger import LEAVE_SCORE as POSE_LEAVE_SCORE
 from app.recognition.triggers.trigger import SALUTE, Trigger

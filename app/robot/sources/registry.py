@@ -13,9 +13,14 @@ from app.clip_sources import VIDEO, ReadOptions, source_of
 from app.recognition.errors import SourceError
 from app.recognition.recording.video import FrameSource, Turn
 from app.robot.events import SourceWarned
-from app.robot.sources.cameras import CameraDevice, NetworkStream, is_address, without_password
+from app.robot.sources.cameras import (
+    CameraDevice,
+    NetworkStream,
+    is_address,
+    is_description_file,
+    without_password,
+)
 from app.robot.sources.live import LiveSource, TurnedCamera
-from app.robot.sources.rtp import is_description_file
 from app.robot.sources.source import Frame, Notice, Source
 
 

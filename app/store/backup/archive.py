@@ -24,9 +24,9 @@ from typing import IO, Any
 from sqlalchemy.exc import DataError, ProgrammingError
 
 from app.recognition.errors import OsgError
-from app.store.atomic_files import PARTIAL_SUFFIX, publish, sync_directory
-from app.store.backup.checked_copy import copy_checked
-from app.store.backup.rows import copy_rows
+from app.recognition.text.atomic_files import sync_directory
+from app.store.atomic_files import PARTIAL_SUFFIX, publish
+from app.store.backup.checked_copy import copy_checked, copy_rows
 from app.store.clips import FILMSTRIP, POSTER, RECORDING
 from app.store.database import Database
 from app.store.models import UPRIGHT, VIDEO, JobStatus, SignIn

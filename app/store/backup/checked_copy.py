@@ -17,16 +17,45 @@ from pathlib import Path
 from typing import Any, Final
 
 from pydantic import TypeAdapter
-from sqlalchemy import Boolean, Column, Float, Integer, String, select, update
-from sqlmodel import AutoString, SQLModel, col
+from sqlalchemy import (
+    Boolean,
+    Column,
+    Connection,
+    Float,
+    Integer,
+    String,
+    insert,
+    select,
+    text,
+    update,
+)
+from sqlmodel import AutoString, Session, SQLModel, col
 
 from app.bags.topic_summary import TopicSummary
 from app.clip_sources import SOURCES, ReadOptions
 from app.recognition.errors import OsgError
-from app.store.backup.rows import AT_ONCE
 from app.store.database import Database
 from app.store.invitations import LONGEST_DAYS
-from app.store.models import OWN_ID, Clip, Invitation, Json, UtcDateTime, now
+from app.store.models import (
+    OWN_ID,
+    AuditEntry,
+    ChangeCount,
+    Clip,
+    Invitation,
+    Json,
+    LanguageRecord,
+    SignIn,
+    UploadReservation,
+    UtcDateTime,
+    now,
+)
+
+AT_ONCE: Final = 100
+"""Rows read and written at a time: the document of a language has up to 64 MB, most have 100 kB."""
+
+OF_A_SERVER: Final = (ChangeCount, SignIn, UploadReservation)
+"""Tables that belong to the running servers and not to the library."""
+
 
 OTHER_CLOCK: Final = timedelta(days=1)
 """Longest time by which the clock of another machine may be fast."""
@@ -211,3 +240,41 @@ def _shown(value: object) -> str:
 
 def _refusal(reason: str) -> OsgError:
     return OsgError(f"the database in the backup {reason}; use another backup")
+
+
+def copy_rows(source: Session, target: Session) -> None:
+    """Copy the rows of all tables; both databases must have the tables of this version.
+
+    Raises
+    ------
+    OsgError
+        When the target holds clips or languages.
+
+    """
+    for kept in (col(Clip.id), col(LanguageRecord.id)):
+        if target.execute(select(kept).limit(1)).first() is not None:
+            raise OsgError(
+                "the database of OSG_DATABASE_URL holds clips or languages already; "
+                "name an empty one, which no server has used"
+            )
+    reading, writing = source.connection(), target.connection()
+    # Sorted, because later tables refer to earlier ones.
+    for table in SQLModel.metadata.sorted_tables:
+        if table.name in {each.__tablename__ for each in OF_A_SERVER}:
+            continue
+        rows = reading.execution_options(yield_per=AT_ONCE).execute(select(table))
+        for some in rows.mappings().partitions():
+            writing.execute(insert(table), [dict(row) for row in some])
+    if writing.dialect.name == "postgresql":
+        _continue_numbers(writing)
+
+
+def _continue_numbers(connection: Connection) -> None:
+    """Continue PostgreSQL's sequences after the numbers of the copied entries."""
+    table = AuditEntry.__tablename__
+    connection.execute(
+        text(
+            f"SELECT setval(pg_get_serial_sequence('{table}', 'id'), "
+            f"(SELECT coalesce(max(id), 0) + 1 FROM {table}), false)"
+        )
+    )

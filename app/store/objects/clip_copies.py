@@ -11,7 +11,7 @@ from pathlib import Path
 from threading import Lock, Thread
 from time import time
 
-from app.store.errors import StoreError
+from app.store.database import StoreError
 from app.store.objects.object_store import ObjectStore
 
 RECENT_SECONDS = 600.0

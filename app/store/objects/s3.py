@@ -12,7 +12,7 @@ from boto3.exceptions import Boto3Error
 from botocore.config import Config
 from botocore.exceptions import BotoCoreError, ClientError
 
-from app.store.errors import StoreUnavailable
+from app.store.database import StoreUnavailable
 
 CONNECT_SECONDS: Final = 5
 """Longest time in seconds to reach the server; a user waits for the answer."""

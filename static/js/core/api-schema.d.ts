@@ -180,38 +180,6 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
-    "/uploads": {
-        parameters: {
-            query?: never;
-            header?: never;
-            path?: never;
-            cookie?: never;
-        };
-        get?: never;
-        put?: never;
-        post: operations["begin_upload_api_v1_uploads_post"];
-        delete?: never;
-        options: operations["tell_abilities_api_v1_uploads_options"];
-        head?: never;
-        patch?: never;
-        trace?: never;
-    };
-    "/uploads/{upload_id}": {
-        parameters: {
-            query?: never;
-            header?: never;
-            path?: never;
-            cookie?: never;
-        };
-        get?: never;
-        put?: never;
-        post?: never;
-        delete: operations["give_up_upload_api_v1_uploads__upload_id__delete"];
-        options?: never;
-        head: operations["tell_offset_api_v1_uploads__upload_id__head"];
-        patch: operations["append_part_api_v1_uploads__upload_id__patch"];
-        trace?: never;
-    };
     "/clips/{clip_id}/timeline": {
         parameters: {
             query?: never;
@@ -242,6 +210,38 @@ export interface paths {
         options?: never;
         head?: never;
         patch?: never;
+        trace?: never;
+    };
+    "/uploads": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        post: operations["begin_upload_api_v1_uploads_post"];
+        delete?: never;
+        options: operations["tell_abilities_api_v1_uploads_options"];
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/uploads/{upload_id}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        post?: never;
+        delete: operations["give_up_upload_api_v1_uploads__upload_id__delete"];
+        options?: never;
+        head: operations["tell_offset_api_v1_uploads__upload_id__head"];
+        patch: operations["append_part_api_v1_uploads__upload_id__patch"];
         trace?: never;
     };
     "/clips/{clip_id}/session.mcap": {
@@ -356,6 +356,38 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/languages/{language_id}/settings": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get: operations["get_settings_api_v1_languages__language_id__settings_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/languages/{language_id}/trigger": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put: operations["change_trigger_api_v1_languages__language_id__trigger_put"];
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/languages/import": {
         parameters: {
             query?: never;
@@ -396,6 +428,38 @@ export interface paths {
             cookie?: never;
         };
         get: operations["describe_export_api_v1_languages__language_id__export_contents_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/languages/{language_id}/slate.svg": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get: operations["get_slate_as_svg_api_v1_languages__language_id__slate_svg_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/languages/{language_id}/slate.pdf": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get: operations["get_slate_as_pdf_api_v1_languages__language_id__slate_pdf_get"];
         put?: never;
         post?: never;
         delete?: never;
@@ -463,6 +527,38 @@ export interface paths {
         put?: never;
         post?: never;
         delete: operations["cancel_check_api_v1_languages__language_id__check_delete"];
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/languages/{language_id}/contrast": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get: operations["contrast_gestures_api_v1_languages__language_id__contrast_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/languages/{language_id}/phrases": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get: operations["describe_phrases_api_v1_languages__language_id__phrases_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
         options?: never;
         head?: never;
         patch?: never;
@@ -676,86 +772,6 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
-    "/languages/{language_id}/slate.svg": {
-        parameters: {
-            query?: never;
-            header?: never;
-            path?: never;
-            cookie?: never;
-        };
-        get: operations["get_slate_as_svg_api_v1_languages__language_id__slate_svg_get"];
-        put?: never;
-        post?: never;
-        delete?: never;
-        options?: never;
-        head?: never;
-        patch?: never;
-        trace?: never;
-    };
-    "/languages/{language_id}/slate.pdf": {
-        parameters: {
-            query?: never;
-            header?: never;
-            path?: never;
-            cookie?: never;
-        };
-        get: operations["get_slate_as_pdf_api_v1_languages__language_id__slate_pdf_get"];
-        put?: never;
-        post?: never;
-        delete?: never;
-        options?: never;
-        head?: never;
-        patch?: never;
-        trace?: never;
-    };
-    "/languages/{language_id}/settings": {
-        parameters: {
-            query?: never;
-            header?: never;
-            path?: never;
-            cookie?: never;
-        };
-        get: operations["get_settings_api_v1_languages__language_id__settings_get"];
-        put?: never;
-        post?: never;
-        delete?: never;
-        options?: never;
-        head?: never;
-        patch?: never;
-        trace?: never;
-    };
-    "/languages/{language_id}/trigger": {
-        parameters: {
-            query?: never;
-            header?: never;
-            path?: never;
-            cookie?: never;
-        };
-        get?: never;
-        put: operations["change_trigger_api_v1_languages__language_id__trigger_put"];
-        post?: never;
-        delete?: never;
-        options?: never;
-        head?: never;
-        patch?: never;
-        trace?: never;
-    };
-    "/languages/{language_id}/contrast": {
-        parameters: {
-            query?: never;
-            header?: never;
-            path?: never;
-            cookie?: never;
-        };
-        get: operations["contrast_gestures_api_v1_languages__language_id__contrast_get"];
-        put?: never;
-        post?: never;
-        delete?: never;
-        options?: never;
-        head?: never;
-        patch?: never;
-        trace?: never;
-    };
     "/languages/choice": {
         parameters: {
             query?: never;
@@ -940,22 +956,6 @@ export interface paths {
             cookie?: never;
         };
         get: operations["get_demonstration_image_api_v1_languages__language_id__demonstrations__index__image_get"];
-        put?: never;
-        post?: never;
-        delete?: never;
-        options?: never;
-        head?: never;
-        patch?: never;
-        trace?: never;
-    };
-    "/languages/{language_id}/phrases": {
-        parameters: {
-            query?: never;
-            header?: never;
-            path?: never;
-            cookie?: never;
-        };
-        get: operations["describe_phrases_api_v1_languages__language_id__phrases_get"];
         put?: never;
         post?: never;
         delete?: never;
@@ -5100,6 +5100,53 @@ export interface operations {
             };
         };
     };
+    get_timeline_api_v1_clips__clip_id__timeline_get: {
+        parameters: {
+            query?: {
+                language_id?: string | null;
+                so_far?: boolean;
+            };
+            header?: never;
+            path: {
+                clip_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["TimelineView"];
+                };
+            };
+        };
+    };
+    get_filmstrip_api_v1_clips__clip_id__filmstrip_get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                clip_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Thumbnails side by side */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "image/jpeg": unknown;
+                };
+            };
+        };
+    };
     begin_upload_api_v1_uploads_post: {
         parameters: {
             query?: never;
@@ -5213,53 +5260,6 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content?: never;
-            };
-        };
-    };
-    get_timeline_api_v1_clips__clip_id__timeline_get: {
-        parameters: {
-            query?: {
-                language_id?: string | null;
-                so_far?: boolean;
-            };
-            header?: never;
-            path: {
-                clip_id: string;
-            };
-            cookie?: never;
-        };
-        requestBody?: never;
-        responses: {
-            /** @description Successful Response */
-            200: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["TimelineView"];
-                };
-            };
-        };
-    };
-    get_filmstrip_api_v1_clips__clip_id__filmstrip_get: {
-        parameters: {
-            query?: never;
-            header?: never;
-            path: {
-                clip_id: string;
-            };
-            cookie?: never;
-        };
-        requestBody?: never;
-        responses: {
-            /** @description Thumbnails side by side */
-            200: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "image/jpeg": unknown;
-                };
             };
         };
     };
@@ -5552,6 +5552,58 @@ export interface operations {
             };
         };
     };
+    get_settings_api_v1_languages__language_id__settings_get: {
+        parameters: {
+            query?: {
+                revision?: number | null;
+            };
+            header?: never;
+            path: {
+                language_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["SettingsView"];
+                };
+            };
+        };
+    };
+    change_trigger_api_v1_languages__language_id__trigger_put: {
+        parameters: {
+            query?: never;
+            header?: {
+                "if-match"?: string | null;
+            };
+            path: {
+                language_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["TriggerDraft"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["LanguageView"];
+                };
+            };
+        };
+    };
     import_language_api_v1_languages_import_post: {
         parameters: {
             query?: {
@@ -5624,6 +5676,54 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["ExportView"];
+                };
+            };
+        };
+    };
+    get_slate_as_svg_api_v1_languages__language_id__slate_svg_get: {
+        parameters: {
+            query?: {
+                revision?: number | null;
+            };
+            header?: never;
+            path: {
+                language_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description The slate */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "image/svg+xml": unknown;
+                };
+            };
+        };
+    };
+    get_slate_as_pdf_api_v1_languages__language_id__slate_pdf_get: {
+        parameters: {
+            query?: {
+                revision?: number | null;
+            };
+            header?: never;
+            path: {
+                language_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description The slate */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/pdf": unknown;
                 };
             };
         };
@@ -5748,6 +5848,58 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content?: never;
+            };
+        };
+    };
+    contrast_gestures_api_v1_languages__language_id__contrast_get: {
+        parameters: {
+            query: {
+                one: string;
+                other: string;
+                revision?: number | null;
+            };
+            header?: never;
+            path: {
+                language_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ContrastView"];
+                };
+            };
+        };
+    };
+    describe_phrases_api_v1_languages__language_id__phrases_get: {
+        parameters: {
+            query?: {
+                gesture?: string[];
+                then?: "wait" | "pause";
+                revision?: number | null;
+            };
+            header?: never;
+            path: {
+                language_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["PhrasesView"];
+                };
             };
         };
     };
@@ -6207,132 +6359,6 @@ export interface operations {
             };
         };
     };
-    get_slate_as_svg_api_v1_languages__language_id__slate_svg_get: {
-        parameters: {
-            query?: {
-                revision?: number | null;
-            };
-            header?: never;
-            path: {
-                language_id: string;
-            };
-            cookie?: never;
-        };
-        requestBody?: never;
-        responses: {
-            /** @description The slate */
-            200: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "image/svg+xml": unknown;
-                };
-            };
-        };
-    };
-    get_slate_as_pdf_api_v1_languages__language_id__slate_pdf_get: {
-        parameters: {
-            query?: {
-                revision?: number | null;
-            };
-            header?: never;
-            path: {
-                language_id: string;
-            };
-            cookie?: never;
-        };
-        requestBody?: never;
-        responses: {
-            /** @description The slate */
-            200: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/pdf": unknown;
-                };
-            };
-        };
-    };
-    get_settings_api_v1_languages__language_id__settings_get: {
-        parameters: {
-            query?: {
-                revision?: number | null;
-            };
-            header?: never;
-            path: {
-                language_id: string;
-            };
-            cookie?: never;
-        };
-        requestBody?: never;
-        responses: {
-            /** @description Successful Response */
-            200: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["SettingsView"];
-                };
-            };
-        };
-    };
-    change_trigger_api_v1_languages__language_id__trigger_put: {
-        parameters: {
-            query?: never;
-            header?: {
-                "if-match"?: string | null;
-            };
-            path: {
-                language_id: string;
-            };
-            cookie?: never;
-        };
-        requestBody: {
-            content: {
-                "application/json": components["schemas"]["TriggerDraft"];
-            };
-        };
-        responses: {
-            /** @description Successful Response */
-            200: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["LanguageView"];
-                };
-            };
-        };
-    };
-    contrast_gestures_api_v1_languages__language_id__contrast_get: {
-        parameters: {
-            query: {
-                one: string;
-                other: string;
-                revision?: number | null;
-            };
-            header?: never;
-            path: {
-                language_id: string;
-            };
-            cookie?: never;
-        };
-        requestBody?: never;
-        responses: {
-            /** @description Successful Response */
-            200: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ContrastView"];
-                };
-            };
-        };
-    };
     choose_gestures_api_v1_languages_choice_post: {
         parameters: {
             query?: never;
@@ -6784,32 +6810,6 @@ export interface operations {
                 };
                 content: {
                     "image/png": unknown;
-                };
-            };
-        };
-    };
-    describe_phrases_api_v1_languages__language_id__phrases_get: {
-        parameters: {
-            query?: {
-                gesture?: string[];
-                then?: "wait" | "pause";
-                revision?: number | null;
-            };
-            header?: never;
-            path: {
-                language_id: string;
-            };
-            cookie?: never;
-        };
-        requestBody?: never;
-        responses: {
-            /** @description Successful Response */
-            200: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["PhrasesView"];
                 };
             };
         };

@@ -14,7 +14,7 @@ from starlette.requests import Request
 from app.api.http import connection
 from app.api.http.connection import while_connected
 from app.api.routes.gestures import previews
-from app.api.routes.languages import pair_differences
+from app.api.routes.languages import checks
 from app.api.services.running_studio import MOST_COMPUTATIONS
 from app.recognition import Language
 from app.recognition.explanation.alignment import compare_pair
@@ -90,7 +90,7 @@ def test_a_pair_difference_ends_when_its_client_leaves_and_keeps_its_place_until
         finally:
             left.set()
 
-    monkeypatch.setattr(pair_differences, "compare_pair", compare)
+    monkeypatch.setattr(checks, "compare_pair", compare)
     monkeypatch.setattr(connection, "while_connected", wait)
     query = urlencode({"one": "circle", "other": "line"})
     with begin(server, "GET", f"{LANGUAGES}/{language}/contrast?{query}"):

@@ -12,7 +12,7 @@ from typing import Any
 import httpx
 import pytest
 
-from app.api.routes.languages import languages, phrases, slates
+from app.api.routes.languages import checks, language_files, languages
 from app.api.services import language_responses, running_studio
 from app.api.services.language_documents import draft_of
 from app.api.services.running_studio import check_store, clean
@@ -98,7 +98,7 @@ def test_long_computations_of_many_clients_take_turns(
         at_work -= 1
         return lay_out(language)
 
-    monkeypatch.setattr(slates, "lay_out", lay_out_slowly)
+    monkeypatch.setattr(language_files, "lay_out", lay_out_slowly)
     with client_of(server.address) as client, ThreadPoolExecutor(8) as others:
         language = client.post("/api/v1/languages", json={"name": "pool"}).json()["id"]
         place = f"/api/v1/languages/{language}/slate.svg"
@@ -140,7 +140,7 @@ def test_what_is_told_of_languages_keeps_no_more_of_their_documents(
         place = f"/api/v1/languages/{made['id']}"
         assert client.get(f"{place}/phrases").status_code == 200
         assert len(client.get(place).json()["sha256"]) == 64
-    assert len(language_responses._checksums) == len(phrases._ambiguities) == 1
+    assert len(language_responses._checksums) == len(checks._ambiguities) == 1
 
 
 def test_edits_of_languages_that_wait_take_no_thread(

@@ -6,7 +6,7 @@ import httpx
 import pytest
 
 from app.api.services.running_studio import Studio
-from app.api.viser_workspaces.view_requests import ViewRequest, view_of
+from app.api.viser_workspaces.routes import ViewRequest, view_of
 from app.store import Clip, NotFound
 from tests.api.languages import LANGUAGES, add_gesture
 from tests.api.running import assert_problem

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from app.recognition import Gesture, Language, LanguageError, Recognizer
-from app.recognition.language.osg_reference import from_reference, to_reference
+from app.recognition.language.export_format import from_reference, to_reference
 from tests.recognition.strategies import SHAPES, circle, line, recording, wedge
 
 GOLDEN = Path(__file__).parents[2] / "golden" / "osg-reference.json"

@@ -12,15 +12,15 @@ from app.recognition import Language, Recognizer, Recording, takes_in
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.recording.clip_range import find_clip_range
 from app.recognition.recording.extraction import explain_missing_salutes
-from app.recognition.recording.salute import HOLD_SECONDS, SHORTEST_TAKE
-from app.recognition.recording.segmentation import TakeMachine, TakeState, list_unseen
-from app.recognition.recording.unseen import (
+from app.recognition.recording.recording import (
     LONGER_HELD,
     find_holes,
     find_missable,
     find_unseen,
     tell_clock,
 )
+from app.recognition.recording.salute import HOLD_SECONDS, SHORTEST_TAKE
+from app.recognition.recording.segmentation import TakeMachine, TakeState, list_unseen
 from tests.conftest import RECORDINGS
 
 LINE = Recording.load(RECORDINGS / "avx2" / "line-test-2.npz")

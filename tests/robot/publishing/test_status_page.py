@@ -26,7 +26,7 @@ from app.robot import (
     SourceRestored,
     VehicleReported,
 )
-from app.robot.publishing import page_server
+from app.robot.publishing import status_page
 from app.robot.publishing.status_page import MOST_EVENTS, SILENT_SECONDS, StatusPage
 from app.robot.runtime import build_language_changed
 from tests.robot.languages import spoken
@@ -145,8 +145,8 @@ def test_requests_that_are_never_finished_hold_few_threads_and_end(
             with suppress(OSError):
                 each.sendall(b"GET / HTTP/1.1\r\nX: ")
         assert fetch(page, "/healthz")[0] == 200
-        wait_until(lambda: threading.active_count() <= before + page_server.MOST_CONNECTIONS)
-        monkeypatch.setattr(page_server, "MOST_SECONDS", 0.0)
+        wait_until(lambda: threading.active_count() <= before + status_page.MOST_CONNECTIONS)
+        monkeypatch.setattr(status_page, "MOST_SECONDS", 0.0)
         wait_until(lambda: threading.active_count() <= before)
     monkeypatch.undo()
     assert fetch(page, "/healthz")[0] == 200

@@ -13,9 +13,9 @@ import pytest
 
 from app.recognition.errors import SourceError
 from app.robot import Frame, Source, SourceLost
-from app.robot.sources import cameras, rtp
+from app.robot.sources import cameras
+from app.robot.sources.cameras import DESCRIPTION
 from app.robot.sources.registry import open_source
-from app.robot.sources.rtp import DESCRIPTION
 from tests.robot.mjpeg_server import FRAME_SIZE
 from tests.robot.rtp_camera import RtpCamera, free_port
 
@@ -75,7 +75,7 @@ def test_the_first_sender_alone_is_watched_on_the_address_that_is_named(
 
 
 def test_a_sender_that_is_named_is_waited_for(port: int, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(rtp, "_sort_host", lambda host: (None, "", host))
+    monkeypatch.setattr(cameras, "_sort_host", lambda host: (None, "", host))
     monkeypatch.setattr(cameras, "OPEN_SECONDS", 0.5)
     with (
         RtpCamera(port, host="127.0.0.5"),

@@ -23,8 +23,8 @@ from app.api.http.page_files import prefix_of
 from app.api.http.problems import ProblemError, problem_responses
 from app.api.ingest import intake
 from app.api.ingest.fields import LONGEST, UploadFields
+from app.api.ingest.intake import SenderQuota
 from app.api.ingest.multipart import display_name, require_space
-from app.api.ingest.quotas import SenderQuota
 from app.api.middleware.request_bodies import too_large
 from app.api.services.identities import identity_of
 from app.api.services.running_studio import CurrentStudio, Studio

@@ -1,4 +1,4 @@
-"""Routes of a language's gestures: add, change, remove, image.
+"""Routes of a language's gestures and of their demonstrations: add, change, remove, draw.
 
 A gesture is addressed by ``?label=``, because browsers resolve ``.`` and ``..`` in a path before
 they send it. The label as the last part of the path works too, for every other label.
@@ -7,23 +7,37 @@ they send it. The label as the last part of the path works too, for every other 
 from __future__ import annotations
 
 from functools import partial
+from typing import Annotated
 
 import numpy as np
-from fastapi import APIRouter, Response
+from fastapi import APIRouter, Path, Response
 
 from app.api.http.problems import ProblemError, problem_responses
 from app.api.http.schemas.clips import PosesView
-from app.api.http.schemas.gestures import GestureChange, GestureDraft, GesturesDraft
+from app.api.http.schemas.gestures import (
+    DemonstrationDraft,
+    DemonstrationView,
+    GestureChange,
+    GestureDraft,
+    GesturesDraft,
+)
 from app.api.http.schemas.languages import LanguageView
 from app.api.routes.asked_revisions import CurrentEdit, CurrentRevision
 from app.api.services import gesture_edits
-from app.api.services.demonstration_sources import keep_source
+from app.api.services.demonstration_sources import keep_source, sources_in
+from app.api.services.language_responses import view_demonstrations
 from app.api.services.running_studio import computed_briefly, edited
 from app.api.services.trajectory_images import IMAGE_RESPONSES, Marks, send_trajectory_image
 from app.recognition import Language, LanguageError
+from app.recognition.gestures.demonstration import MAX_DEMONSTRATIONS
 from app.recognition.poses.trajectory import Trajectory
 
-router = APIRouter(prefix="/languages/{language_id}/gestures", tags=["gestures"])
+Index = Annotated[
+    int, Path(ge=0, lt=MAX_DEMONSTRATIONS, description="Place of the demonstration, from 0")
+]
+
+
+router = APIRouter(prefix="/languages/{language_id}", tags=["gestures"])
 
 TORSO_PIXELS = 160
 """Height in pixels of the torso in a demonstration drawn without its clip: the picture of a diver
@@ -33,7 +47,7 @@ BORDER = 40
 """Pixels around the drawing: room for the half of the head beyond its middle, which is followed."""
 
 
-@router.post("", status_code=201, responses=problem_responses(404, 409, 412))
+@router.post("/gestures", status_code=201, responses=problem_responses(404, 409, 412))
 @edited
 def add_gesture(draft: GestureDraft, edit: CurrentEdit) -> LanguageView:
     """Save a demonstration as a new gesture of the language."""
@@ -49,7 +63,7 @@ def add_gesture(draft: GestureDraft, edit: CurrentEdit) -> LanguageView:
     return edit.answer(state)
 
 
-@router.post("/batch", status_code=201, responses=problem_responses(404, 409, 412))
+@router.post("/gestures/batch", status_code=201, responses=problem_responses(404, 409, 412))
 @edited
 def add_gestures(draft: GesturesDraft, edit: CurrentEdit) -> LanguageView:
     """Save several demonstrations as new gestures in one revision: all of them, or none."""
@@ -62,8 +76,8 @@ def add_gestures(draft: GesturesDraft, edit: CurrentEdit) -> LanguageView:
     return edit.answer(state)
 
 
-@router.patch("", responses=problem_responses(404, 409, 412))
-@router.patch("/{label:path}", responses=problem_responses(404, 409, 412))
+@router.patch("/gestures", responses=problem_responses(404, 409, 412))
+@router.patch("/gestures/{label:path}", responses=problem_responses(404, 409, 412))
 @edited
 def change_gesture(label: str, change: GestureChange, edit: CurrentEdit) -> LanguageView:
     """Change what a gesture says, what of it counts, or the demonstration that shows it."""
@@ -81,8 +95,8 @@ def change_gesture(label: str, change: GestureChange, edit: CurrentEdit) -> Lang
     return edit.answer(state)
 
 
-@router.delete("", responses=problem_responses(404, 409, 412))
-@router.delete("/{label:path}", responses=problem_responses(404, 409, 412))
+@router.delete("/gestures", responses=problem_responses(404, 409, 412))
+@router.delete("/gestures/{label:path}", responses=problem_responses(404, 409, 412))
 @edited
 def remove_gesture(label: str, edit: CurrentEdit) -> LanguageView:
     """Take a gesture out that no phrase needs; the revisions before still have it."""
@@ -97,16 +111,16 @@ def remove_gesture(label: str, edit: CurrentEdit) -> LanguageView:
     return edit.answer(edit.save(f"Remove {label}", edit_language))
 
 
-@router.get("/image", response_class=Response, responses=IMAGE_RESPONSES)
-@router.get("/{label:path}/image", response_class=Response, responses=IMAGE_RESPONSES)
+@router.get("/gestures/image", response_class=Response, responses=IMAGE_RESPONSES)
+@router.get("/gestures/{label:path}/image", response_class=Response, responses=IMAGE_RESPONSES)
 def get_gesture_image(label: str, asked: CurrentRevision, marks: Marks = False) -> Response:
     """Send a gesture's trajectory image."""
     gesture = gesture_edits.gesture_in(asked.language, label)
     return send_trajectory_image(gesture, asked.number, marks)
 
 
-@router.get("/demonstration", responses=problem_responses(404))
-@router.get("/{label:path}/demonstration", responses=problem_responses(404))
+@router.get("/gestures/demonstration", responses=problem_responses(404))
+@router.get("/gestures/{label:path}/demonstration", responses=problem_responses(404))
 @computed_briefly
 def get_demonstration(label: str, asked: CurrentRevision) -> PosesView:
     """Return a gesture's demonstration as the language keeps it, laid out for drawing."""
@@ -134,3 +148,40 @@ def _lay_out(trajectory: Trajectory) -> PosesView:
         confidence=None,
         frame_size=[int(size[0]), int(size[1])],
     )
+
+
+@router.get("/demonstrations", responses=problem_responses(404))
+def list_demonstrations(label: str, asked: CurrentRevision) -> list[DemonstrationView]:
+    """List the demonstrations of a gesture."""
+    gesture = gesture_edits.gesture_in(asked.language, label)
+    sources = sources_in(asked.studio, asked.language)[label]
+    return view_demonstrations(asked.state, gesture, sources)
+
+
+@router.post("/demonstrations", status_code=201, responses=problem_responses(404, 409, 412))
+@edited
+def add_demonstration(draft: DemonstrationDraft, edit: CurrentEdit) -> LanguageView:
+    """Add a take to a gesture as one more demonstration, by the same diver or another."""
+    demonstration = gesture_edits.demonstration_at(edit.studio, draft, edit.trigger)
+    changed = partial(gesture_edits.add_demonstration_to, draft=draft, demonstration=demonstration)
+    state = edit.save(f"Add a demonstration of {draft.label}", changed)
+    keep_source(edit.studio, state, draft.label, draft, demonstration, index=-1)
+    return edit.answer(state)
+
+
+@router.delete("/demonstrations/{index}", responses=problem_responses(404, 409, 412))
+@edited
+def remove_demonstration(index: Index, label: str, edit: CurrentEdit) -> LanguageView:
+    """Remove a demonstration of a gesture that has others; without the first, the next is first."""
+    changed = partial(gesture_edits.remove_demonstration_from, label=label, index=index)
+    return edit.answer(edit.save(f"Remove a demonstration of {label}", changed))
+
+
+@router.get("/demonstrations/{index}/image", response_class=Response, responses=IMAGE_RESPONSES)
+def get_demonstration_image(
+    index: Index, label: str, asked: CurrentRevision, marks: Marks = False
+) -> Response:
+    """Send the trajectory image of a demonstration."""
+    gesture = gesture_edits.gesture_in(asked.language, label)
+    shown = gesture_edits.require_demonstration(gesture, index)
+    return send_trajectory_image(shown, asked.number, marks)

@@ -17,9 +17,9 @@ from app.api.http.schemas.values import Body, Identifier, Label, View
 from app.api.routes.asked_revisions import CurrentEdit, CurrentRevision
 from app.api.services.demonstration_sources import digests_of, keep_source
 from app.api.services.gesture_edits import demonstration_at, gesture_in, gestures_from
-from app.api.services.known_takes import load_known
 from app.api.services.running_studio import CurrentStudio, Studio, computed, edited
 from app.api.services.sample_library import STROKES
+from app.api.services.stored_recognitions import load_known
 from app.recognition import Gesture, Language
 from app.recognition.explanation.context import KnownTake
 from app.recognition.health.choice import (
@@ -31,8 +31,7 @@ from app.recognition.health.choice import (
 )
 from app.resources import known_signs_file
 from app.store import LanguageState, NotFound
-from app.ui.charts import data_url
-from app.ui.direction_marks import mark_gesture
+from app.ui.charts import data_url, mark_gesture
 
 MOST_COMPARED = 300
 """Most demonstrations of a language and candidates: each is compared with every gesture, for

@@ -7,16 +7,15 @@ from fastapi import APIRouter, Request, Response
 from app.api.http.page_files import INVITATION_ADDRESS, prefix_of
 from app.api.http.problems import ProblemError, problem_responses
 from app.api.http.schemas import invitations as schemas
-from app.api.ingest.quotas import SenderQuota
+from app.api.ingest.intake import SenderQuota
 from app.api.services.gesture_edits import add_demonstration_to, demonstration_at, gesture_in
 from app.api.services.invited_takes import Returned, add_take, choose_range, remove_take
-from app.api.services.known_takes import load_known
 from app.api.services.running_studio import CurrentStudio, Studio, computed, edited
+from app.api.services.stored_recognitions import load_known
 from app.recognition import Recognizer
 from app.recognition.explanation.context import KnownTakes
 from app.store import InvitationState, InvitedTake, NotFound
-from app.ui.charts import data_url
-from app.ui.direction_marks import mark_gesture
+from app.ui.charts import data_url, mark_gesture
 from app.ui.qr_code import draw_qr_code
 
 router = APIRouter(prefix="/languages/{language_id}/invitations", tags=["invitations"])

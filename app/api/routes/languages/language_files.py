@@ -1,4 +1,4 @@
-"""Routes of language files: import and export."""
+"""Routes of what enters and leaves with a language: import, export, slate."""
 
 from __future__ import annotations
 
@@ -14,18 +14,24 @@ from app.api.http.problems import ProblemError, file_responses, problem_response
 from app.api.http.revisions import revision_tag
 from app.api.http.schemas.languages import LanguageView
 from app.api.http.schemas.values import Name, View
+from app.api.ingest.intake import SenderQuota
 from app.api.ingest.multipart import receive_body
-from app.api.ingest.quotas import SenderQuota
 from app.api.routes.asked_revisions import AskedRevision, CurrentRevision
 from app.api.services.language_documents import LONGEST_NAME
 from app.api.services.language_responses import announce, save_language
-from app.api.services.running_studio import CurrentStudio, Studio, computed
+from app.api.services.running_studio import CurrentStudio, Studio, computed, computed_briefly
 from app.api.workers.tasks import Import, ImportedLanguage, read_language
 from app.api.workers.worker_messages import Failed
 from app.recognition.language.export_format import FileFormat
 from app.recognition.language.file_schema import FORMAT, VERSION
 from app.recognition.language.requirements import find_requirements
 from app.store import Draft, Quota
+from app.ui.slate.layout import lay_out
+from app.ui.slate.pdf import to_pdf
+from app.ui.slate.svg import to_svg
+
+SVG, PDF = "image/svg+xml", "application/pdf"
+
 
 SMALL_BYTES = 512 * 1024
 """Largest file that is read in a thread, within half a second: thirty gestures in our format."""
@@ -150,3 +156,32 @@ def _create(
     read = found.model_dump(exclude={"revision"}) | {"name": found.name[:LONGEST_NAME]}
     draft = Draft(**read)
     return announce(studio, save_language(studio, quota, draft, found.revision), response)
+
+
+@router.get(
+    "/{language_id}/slate.svg",
+    response_class=Response,
+    responses=file_responses("The slate", SVG),
+)
+@computed_briefly
+def get_slate_as_svg(asked: CurrentRevision) -> Response:
+    """Send a language as one printable page, in the fonts of whoever opens it."""
+    content = to_svg(lay_out(asked.language))
+    return _file(content.encode("utf-8"), SVG, attachment(asked.state.revision.name, ".svg"))
+
+
+@router.get(
+    "/{language_id}/slate.pdf",
+    response_class=Response,
+    responses=file_responses("The slate", PDF),
+)
+@computed_briefly
+def get_slate_as_pdf(asked: CurrentRevision) -> Response:
+    """Send a language as one printable page, with its fonts inside."""
+    content = to_pdf(lay_out(asked.language))
+    return _file(content, PDF, attachment(asked.state.revision.name, ".pdf"))
+
+
+def _file(content: bytes, media_type: str, disposition: str) -> Response:
+    # Sent as a download and not shown in our origin, because labels may be a stranger's text.
+    return Response(content, media_type=media_type, headers={"Content-Disposition": disposition})

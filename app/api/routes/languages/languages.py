@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
-from typing import Any
+from typing import Annotated, Any
 
 from fastapi import APIRouter, Response
-from pydantic import TypeAdapter
+from pydantic import Field, TypeAdapter
 
 from app.api.http.list_responses import NOT_SENT_AGAIN, KnownTags, list_response
 from app.api.http.problems import ProblemError, problem_responses
@@ -18,7 +18,8 @@ from app.api.http.schemas.languages import (
     LanguageSummary,
     LanguageView,
 )
-from app.api.ingest.quotas import SenderQuota
+from app.api.http.schemas.values import Body, Identifier, Seconds, View
+from app.api.ingest.intake import SenderQuota
 from app.api.routes.asked_revisions import CurrentEdit, CurrentRevision
 from app.api.services.language_documents import draft_of, name_of_copy
 from app.api.services.language_responses import (
@@ -27,11 +28,21 @@ from app.api.services.language_responses import (
     save_language,
     view_summary,
 )
-from app.api.services.running_studio import CurrentStudio, Studio, edited
+from app.api.services.running_studio import CurrentStudio, Studio, computed_briefly, edited
 from app.recognition import Language
-from app.recognition.language.file_schema import entry_to_tuning
+from app.recognition.errors import TriggerError
+from app.recognition.features.trajectory_image import SIMPLIFICATION
+from app.recognition.gestures.gesture import MAX_LABEL_LENGTH
+from app.recognition.gestures.profile import (
+    DEFAULT_PROFILE,
+    MAX_SIMPLIFICATION,
+    PROFILES,
+    ProfileName,
+)
+from app.recognition.language.file_schema import TuningEntry, entry_to_tuning, tuning_to_entry
 from app.recognition.language.grammar_entry import entry_to_grammar
 from app.recognition.text.look_alikes import are_confusable
+from app.recognition.triggers.trigger import ArmPose, Trigger, TriggerKind
 from app.store import LanguageStore
 
 router = APIRouter(prefix="/languages", tags=["languages"])
@@ -145,3 +156,117 @@ def _summaries(
 
 
 _listed = list_response(_summaries, TypeAdapter(list[LanguageSummary]), kept=1)
+
+
+class ProfileView(View):
+    """A profile that a language can choose."""
+
+    name: ProfileName
+    rejects: bool
+    """Whether it rejects movements that are no gesture."""
+    repairs_keypoints: bool
+    """Whether bad keypoints are repaired first."""
+    voters: list[str]
+
+
+class SettingsView(View):
+    """How a language is recognised, and what it would be by default."""
+
+    profile: ProfileName
+    default_profile: ProfileName
+    profiles: list[ProfileView]
+    tuning: TuningEntry | None
+    """What differs from the profile; null: nothing."""
+    simplification: float
+    """Default tolerance of drawings, pixels of 224."""
+    most_simplification: float
+    weights: dict[str, float]
+    """Each voter's normalised weight in this language, with its weight factor; empty without
+    gestures."""
+
+
+@router.get("/{language_id}/settings", responses=problem_responses(404))
+@computed_briefly
+def get_settings(asked: CurrentRevision) -> SettingsView:
+    """Return profile and tuning of a language beside the defaults; `PATCH` changes them."""
+    language = asked.language
+    weights = dict(asked.studio.recognizer(asked.state).vote.weights) if language.gestures else {}
+    return SettingsView(
+        profile=language.profile,
+        default_profile=DEFAULT_PROFILE,
+        profiles=[
+            ProfileView(**(vars(each) | {"voters": [voter.name for voter in each.voters]}))
+            for each in PROFILES.values()
+        ],
+        tuning=tuning_to_entry(language.tuning),
+        simplification=SIMPLIFICATION,
+        most_simplification=MAX_SIMPLIFICATION,
+        weights=weights,
+    )
+
+
+class HeldPose(Body):
+    """Where a pose of the arms is held."""
+
+    clip_id: Identifier
+    start: Seconds | None = None
+    """Null: of the clip."""
+    end: Seconds | None = None
+    """Null: of the clip."""
+
+
+class TriggerDraft(Body):
+    """What shall begin and end the takes of a language."""
+
+    kind: TriggerKind
+    start: HeldPose | None = None
+    """Of kind pose, the one that begins a take; null: the one that does already."""
+    stop: HeldPose | None = None
+    """The pose that ends a take; null: the one that begins it."""
+    start_label: Annotated[str, Field(max_length=MAX_LABEL_LENGTH)] = ""
+    """Of kind gesture, which one begins."""
+    stop_label: Annotated[str, Field(max_length=MAX_LABEL_LENGTH)] = ""
+    """Which one ends; empty: the same."""
+
+
+@router.put("/{language_id}/trigger", responses=problem_responses(404, 409, 412))
+@edited
+def change_trigger(draft: TriggerDraft, edit: CurrentEdit) -> LanguageView:
+    """Choose what begins and ends a take; the takes of all clips are then found by it."""
+    studio = edit.studio
+    start = None if draft.start is None else _pose(studio, draft.start, "/start")
+    stop = None if draft.stop is None else _pose(studio, draft.stop, "/stop")
+
+    def change(language: Language) -> Trigger:
+        kept = language.trigger.start if draft.kind == "pose" else None
+        try:
+            return Trigger(draft.kind, start or kept, stop, draft.start_label, draft.stop_label)
+        except TriggerError as error:
+            raise _refusal(str(error), "/stop" if stop else "/start") from error
+
+    words = change(studio.language(studio.languages.get(edit.language_id))).words
+    return edit.answer(
+        edit.save(f"Find takes {words}", lambda each: replace(each, trigger=change(each)))
+    )
+
+
+def _pose(studio: Studio, where: HeldPose, pointer: str) -> ArmPose:
+    """Return the pose held in a range of a clip; a problem names its place in the request."""
+    poses = studio.recording(where.clip_id).poses
+    first = float(poses.time[0]) if where.start is None else where.start
+    last = float(poses.time[-1]) if where.end is None else where.end
+    inside = poses.between(first, last)
+    if not len(inside):
+        raise _refusal(
+            f"no frames lie between {first:g} s and {last:g} s; the clip goes from "
+            f"{poses.time[0]:g} s to {poses.time[-1]:g} s",
+            pointer,
+        )
+    try:
+        return ArmPose.from_poses(inside)
+    except TriggerError as error:
+        raise _refusal(str(error), pointer) from error
+
+
+def _refusal(reason: str, pointer: str) -> ProblemError:
+    return ProblemError(422, "trigger_unusable", reason, pointer=pointer)

@@ -8,9 +8,9 @@ from fastapi import APIRouter
 from pydantic import Field
 
 from app.api.http.problems import ProblemError, problem_responses
-from app.api.http.schemas.recognitions import RecognitionRequest
+from app.api.http.schemas.gestures import RecognitionRequest
 from app.api.http.schemas.values import Body, Diver, Identifier, Label, Seconds, View
-from app.api.ingest.quotas import SenderQuota
+from app.api.ingest.intake import SenderQuota
 from app.api.services.demonstration_sources import list_sources
 from app.api.services.gesture_edits import gesture_in
 from app.api.services.running_studio import CurrentStudio, Studio, edited

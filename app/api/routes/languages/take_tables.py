@@ -17,7 +17,7 @@ from app.api.http.problems import ProblemError, problem_of, problem_responses
 from app.api.http.schemas.values import Body, Identifier, View
 from app.api.jobs.job import Job, Report, TimeLeft, compute_in_place, events_about
 from app.api.routes.awaited_jobs import await_job
-from app.api.services.clip_takes import find_takes
+from app.api.services.demonstration_sources import SAME_TAKE, find_takes
 from app.api.services.running_studio import CurrentStudio, Studio
 from app.api.services.stored_recognitions import require_landmarks_of
 from app.api.workers.worker_messages import Progress
@@ -100,10 +100,6 @@ def _load(
         studio.languages.get(language_id),
         [studio.clips.get(clip_id).clip for clip_id in wanted.clip_ids],
     )
-
-
-SAME_TAKE = 0.5
-"""Share of a take that a labelled take must cover to count as the same."""
 
 
 def take_table_job(

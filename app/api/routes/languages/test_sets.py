@@ -6,11 +6,13 @@ from fastapi import APIRouter, Request, Response
 from starlette.concurrency import run_in_threadpool
 
 from app.api.http.problems import ProblemError, problem_responses
-from app.api.http.schemas.test_sets import LabelledTakeChange, LabelledTakesDraft, TestSetView
-from app.api.ingest.quotas import SenderQuota
+from app.api.ingest.intake import SenderQuota
 from app.api.routes.awaited_jobs import await_job
 from app.api.services.running_studio import CurrentStudio, Studio
 from app.api.services.test_sets import (
+    LabelledTakeChange,
+    LabelledTakesDraft,
+    TestSetView,
     add_labelled,
     test_run_key,
     test_run_of,

@@ -8,9 +8,9 @@ from fastapi import APIRouter, Query, Response
 
 from app.api.http.downloads import attachment_as_written
 from app.api.http.problems import ProblemError, file_responses, problem_responses
-from app.api.http.schemas.recognitions import ExplanationView, RecognitionRequest, RecognitionView
+from app.api.http.schemas.gestures import ExplanationView, RecognitionRequest, RecognitionView
 from app.api.http.schemas.values import Label, View
-from app.api.ingest.quotas import SenderQuota
+from app.api.ingest.intake import SenderQuota
 from app.api.services.running_studio import CurrentStudio, computed, computed_briefly
 from app.api.services.stored_recognitions import (
     load_context,
@@ -20,7 +20,7 @@ from app.api.services.stored_recognitions import (
     view_recognition,
     write_notes,
 )
-from app.api.viser_workspaces.view_requests import ViewRequest, view_of
+from app.api.viser_workspaces.routes import ViewRequest, view_of
 from app.recognition.explanation.explanation import explain
 from app.ui.charts import data_url
 from app.ui.recognition_page import analysis_page

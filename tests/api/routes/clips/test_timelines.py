@@ -6,7 +6,7 @@ import httpx
 import numpy as np
 import pytest
 
-from app.api.routes.clips.timelines import wrist_speeds
+from app.api.routes.clips.clips import wrist_speeds
 from app.api.services.running_studio import Studio
 from app.recognition import PoseSequence
 from tests.api.recordings import add_recorded_clip, recording_of
