@@ -20,8 +20,8 @@ from app.recognition.explanation.context import RecognitionContext
 from app.recognition.explanation.explanation import explain
 from app.recognition.gestures.gesture import Gesture
 from app.recognition.gestures.profile import Tuning
-from app.recognition.health.ambiguity import find_ambiguities
 from app.recognition.health.check import check_health
+from app.recognition.health.phrase_ambiguity import find_ambiguities
 from app.recognition.language.language import Language
 from app.recognition.phrases.parser import PhraseParser
 from app.recognition.poses.sequence import PoseSequence

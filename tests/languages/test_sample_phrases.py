@@ -2,7 +2,7 @@
 
 import pytest
 
-from app.recognition.health.ambiguity import find_ambiguities
+from app.recognition.health.phrase_ambiguity import find_ambiguities
 from app.recognition.phrases.parser import PhraseParser
 from languages.build import PHRASES
 

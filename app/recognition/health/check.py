@@ -22,7 +22,6 @@ from app.recognition.explanation.causes import ALIKE
 from app.recognition.features.trajectory_image import draw_hands
 from app.recognition.gestures.demonstration import condense
 from app.recognition.gestures.profile import PROFILES
-from app.recognition.health.ambiguity import find_ambiguities
 from app.recognition.health.finding import (
     DUPLICATE,
     Finding,
@@ -30,6 +29,7 @@ from app.recognition.health.finding import (
     measure_visible_share,
 )
 from app.recognition.health.forecast import Forecast, make_forecast, measure_curve
+from app.recognition.health.phrase_ambiguity import find_ambiguities
 from app.recognition.health.report import (
     GestureHealth,
     HealthReport,

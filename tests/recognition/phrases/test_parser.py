@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from app.recognition.health.ambiguity import find_ambiguities
+from app.recognition.health.phrase_ambiguity import find_ambiguities
 from app.recognition.phrases.grammar import Grammar
 from app.recognition.phrases.parser import PhraseEvent, PhraseParser, interpret_message
 from app.recognition.phrases.phrase import Phrase, Slot

@@ -192,18 +192,17 @@ async def turn_clip(
         raise ProblemError(409, "no_pictures", detail)
     await require_place_in_queue(request, studio)
     # The job is stored first, because of two who turn at the same time only one may.
-    job = await _queue_again(request, clip_id, studio, anew=True)
+    job = await _add_job(request, clip_id, studio, anew=True)
     await run_in_threadpool(studio.clips.turn, clip_id, choice.degrees)
     return await _submit(job, studio)
 
 
 async def _another_job(request: Request, clip_id: str, studio: Studio) -> schemas.ClipAccepted:
-    return await _submit(await _queue_again(request, clip_id, studio), studio)
+    return await _submit(await _add_job(request, clip_id, studio), studio)
 
 
-async def _queue_again(
-    request: Request, clip_id: str, studio: Studio, *, anew: bool = False
-) -> Job:
+async def _add_job(request: Request, clip_id: str, studio: Studio, *, anew: bool = False) -> Job:
+    """Store another job of a clip, which `_submit` starts; refuse where none is needed."""
     retry = partial(studio.jobs.retry, clip_id, client_of(request), anew=anew)
     job = await run_in_threadpool(retry)
     if job is None:

@@ -37,8 +37,8 @@ from app.recognition.explanation.alignment import Alignment, PairDifference, com
 from app.recognition.explanation.blame import find_blame
 from app.recognition.explanation.context import KnownTakes
 from app.recognition.gestures.gesture import MAX_LABEL_LENGTH, Gesture
-from app.recognition.health.ambiguity import Ambiguity, AmbiguityKind, find_ambiguities
 from app.recognition.health.finding import Finding, Verdict
+from app.recognition.health.phrase_ambiguity import Ambiguity, AmbiguityKind, find_ambiguities
 from app.recognition.phrases.grammar import Grammar
 from app.recognition.phrases.parser import PhraseEvent, PhraseEventKind, PhraseParser
 from app.store import LanguageState

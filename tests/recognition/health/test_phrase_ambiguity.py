@@ -6,7 +6,7 @@ from dataclasses import replace
 import pytest
 from hypothesis import given, settings
 
-from app.recognition.health.ambiguity import find_ambiguities
+from app.recognition.health.phrase_ambiguity import find_ambiguities
 from app.recognition.phrases.automaton import Parse
 from app.recognition.phrases.grammar import Grammar
 from app.recognition.phrases.parser import PhraseParser
