@@ -99,9 +99,10 @@ def test_the_flat_picture_comes_first_and_the_cube_is_a_key_away_and_remembered(
 
 
 def test_answer_picture_drawings_and_first_voters_are_in_sight_and_nothing_jumps(
-    open_page: OpenPage, library: Library
+    open_page: OpenPage, server: Running, library: Library
 ) -> None:
-    page = open_page(library.address, size=(1440, 900), scene=False)
+    clip = add_clip(server, "circle", name="second dive of the team, left camera.mp4")
+    page = open_page(library.address | {"clip": clip}, size=(1440, 900), scene=False)
     expect(page.get_by_role("button", name="Recognise", exact=True)).to_be_enabled()
     page.get_by_label("Expected", exact=True).select_option("line")
     before = page.locator("#lab-box").bounding_box()
