@@ -10,8 +10,8 @@ from hypothesis import strategies as st
 
 from app.api.ingest.multipart import LONGEST_NAME, MOST_PARTS, display_name
 from app.settings import Limits, Settings
-from tests.api.routes.clips.test_clips import CLIPS, assert_nothing_kept, upload
-from tests.api.running import Running, assert_problem, client_of, running, until
+from tests.api.routes.clips.test_clips import CLIPS, assert_nothing_kept
+from tests.api.running import Running, assert_problem, running, until
 
 FORM = {"Content-Type": "multipart/form-data; boundary=b"}
 PART = b'--b\r\nContent-Disposition: form-data; name="%s"; filename="x.mp4"\r\n\r\n'
@@ -76,8 +76,7 @@ def test_a_shown_name_is_short_visible_and_no_path(name: str) -> None:
 def test_a_malformed_form_is_400(
     client: httpx.Client, settings: Settings, headers: dict[str, str], body: bytes
 ) -> None:
-    answer = client.post(CLIPS, content=body, headers=headers)
-    assert_problem(answer, 400, "malformed_upload")
+    assert_problem(client.post(CLIPS, content=body, headers=headers), 400, "malformed_upload")
     assert_nothing_kept(client, settings)
 
 
@@ -93,16 +92,6 @@ def test_small_fields_beside_the_file_are_ignored(client: httpx.Client, small_cl
     files = {"file": ("dive.mp4", small_clip.read_bytes())}
     answer = client.post(CLIPS, files=files, data={"note": "first dive"})
     assert answer.status_code == 202
-
-
-@pytest.mark.slow
-@pytest.mark.withstands(row="H06")
-def test_a_name_that_looks_like_a_path_is_only_shown(
-    client: httpx.Client, settings: Settings, small_clip: Path
-) -> None:
-    clip_id = upload(client, small_clip, name="../../../evil.mp4").json()["id"]
-    assert client.get(f"{CLIPS}/{clip_id}").json()["name"] == "evil.mp4"
-    assert not list(settings.data_dir.parent.rglob("*evil*"))
 
 
 def begin_upload(server: Running, length: int) -> socket.socket:
@@ -128,17 +117,6 @@ def test_a_sender_that_vanishes_leaves_nothing(
         until(lambda: partials(settings))
     until(lambda: not partials(settings))
     assert_nothing_kept(client, settings)
-
-
-def test_a_sender_that_stalls_is_dismissed(settings: Settings) -> None:
-    impatient = settings.model_copy(update={"limits": Limits(upload_grace_seconds=0.2)})
-    with running(impatient) as server, begin_upload(server, 100_000) as connection:
-        connection.settimeout(60)
-        answer = connection.recv(10_000)
-        assert answer.startswith(b"HTTP/1.1 408 ")
-        assert b'"upload_too_slow"' in answer or b'"upload_too_slow"' in connection.recv(10_000)
-        with client_of(server.address) as client:
-            assert_nothing_kept(client, impatient)
 
 
 @pytest.mark.withstands(row="H03")
