@@ -19,8 +19,7 @@ import pytest
 from app.store import Clip, ClipStore, Role, TokenFile
 from app.store.jobs import JobStore
 from tests.api.languages import LANGUAGES
-from tests.api.recordings import add_recorded_clip, recording_of
-from tests.api.routes.clips.test_clips import CLIPS, upload
+from tests.api.routes.clips.test_clips import upload
 from tests.api.running import Running, assert_problem, client_of, running_two, until
 from tests.api.running_workers import linux, workers_of
 from tests.postgres import Cluster
@@ -95,16 +94,6 @@ def test_a_change_on_one_server_reaches_the_pages_and_lists_of_the_other(
             headers={"If-Match": '"1"'},
         )
         assert answer.status_code == 412
-
-
-def test_a_clip_of_one_server_is_recognised_on_the_other(
-    servers: tuple[Running, Running],
-) -> None:
-    one, two = servers
-    clip = add_recorded_clip(one.studio, recording_of("circle"))
-    takes = httpx.get(f"{two.address}{CLIPS}/{clip}/takes").json()
-    assert len(takes) == 1
-    assert httpx.get(f"{two.address}{CLIPS}/{clip}/video").status_code == 200
 
 
 @pytest.mark.slow

@@ -20,8 +20,6 @@ BONES = np.array([[0.45, 0.27, 0.22], [0.50, 0.31, 0.23], [0.46, 0.29, 0.23], [0
 CAMERA_DISTANCE = 8.0
 """Palms between camera and hand: three quarters of a metre."""
 
-FINGER_NAMES = ("index", "middle", "ring", "little")
-
 
 @dataclass(frozen=True)
 class Finger:

@@ -145,13 +145,6 @@ def test_a_gesture_whose_keypoints_the_query_lacks_is_infinitely_far(language: L
         assert result.to_dict()["distances"][0][-1] is None
 
 
-def test_left_and_right_are_told_apart(language: Language) -> None:
-    left = Gesture.from_demonstration("left circle", recording(circle, hand="left_wrist"))
-    recognizer = Recognizer(language.with_gesture(left))
-    query = recording(circle, hand="left_wrist", jitter=0.01, torso=70)
-    assert recognizer.recognize(query).label == "left circle"
-
-
 def test_a_recording_of_nobody_is_refused(recognizer: Recognizer) -> None:
     poses = recording(circle)
     with pytest.raises(PoseError, match="none of the 60 frames shows a landmark"):
@@ -238,17 +231,6 @@ def counted(recognizer: Recognizer, distances: FloatArray) -> Recognition:
     return recognizer.vote.count_votes(distances)
 
 
-def test_a_tie_goes_to_the_smaller_mean_relative_distance(recognizer: Recognizer) -> None:
-    nearest = np.full((len(PAPER_VOTERS), len(SHAPES)), 10.0)
-    nearest[:3, 0] = 6.0  # three votes for the first gesture, by a little
-    nearest[3:6, 1] = 1.0  # three for the second, by far
-    nearest[6, 2] = 5.0
-    result = counted(recognizer, nearest)
-    assert list(result.votes.values()).count("circle") == 3
-    assert list(result.votes.values()).count("wedge") == 3
-    assert result.label == "wedge"
-
-
 def test_where_the_votes_and_the_distances_disagree_confidence_is_the_share_of_votes(
     recognizer: Recognizer,
 ) -> None:
@@ -322,12 +304,3 @@ def test_a_still_take_without_hands_says_what_is_missing() -> None:
     held = Language(name="held", gestures=moving_and_held().gestures[2:])
     with pytest.raises(PoseError, match="no hand is seen in this take that holds a shape"):
         Recognizer(held).recognize(replace(hold(FLAT), hands=None))
-
-
-def test_held_shapes_survive_their_file_to_the_last_bit() -> None:
-    language = moving_and_held()
-    again = Language.from_json(language.to_json())
-    assert again.to_json() == language.to_json()
-    query = hold(TWO, roll=5, seed=9)
-    one, other = (Recognizer(each).recognize(query) for each in (language, again))
-    assert one.to_dict() == other.to_dict()

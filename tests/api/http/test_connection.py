@@ -20,7 +20,7 @@ from app.recognition import Language
 from app.recognition.explanation.alignment import compare_pair
 from app.recognition.recognizer import Recognizer
 from tests.api.languages import LANGUAGES
-from tests.api.running import Running, client_of, until
+from tests.api.running import Running, until
 from tests.recognition.demonstrations import pool
 from tests.recognition.strategies import circle, line
 
@@ -101,22 +101,3 @@ def test_a_pair_difference_ends_when_its_client_leaves_and_keeps_its_place_until
     go_on.set()
     until(lambda: server.studio.computations._value == MOST_COMPUTATIONS)
     assert compared == [(0, 1)]
-
-
-def test_more_previews_than_places_wait_and_are_all_answered(
-    client: httpx.Client, language: str
-) -> None:
-    body = {"label": "circle", "change": {}}
-    statuses: list[int] = []
-
-    def ask() -> None:
-        with client_of(client.base_url) as own:
-            answer = own.post(f"{LANGUAGES}/{language}/preview", json=body)
-            statuses.append(answer.status_code)
-
-    threads = [threading.Thread(target=ask) for _ in range(6)]
-    for thread in threads:
-        thread.start()
-    for thread in threads:
-        thread.join()
-    assert statuses == [200] * 6

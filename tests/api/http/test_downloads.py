@@ -6,6 +6,9 @@ import pytest
 from app.api.http.downloads import attachment
 from tests.api.routes.clips.test_clips import CLIPS
 from tests.api.running import assert_problem
+from tests.api.shared_server import server, settings
+
+__all__ = ["server", "settings"]
 
 
 @pytest.mark.parametrize(

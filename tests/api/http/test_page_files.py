@@ -10,8 +10,9 @@ import pytest
 from app import resources
 from app.api.http.page_files import COMMENT
 from app.settings import Settings
-from tests.api.running import client_of, running
+from tests.api.running import Running, client_of, running
 
+STATIC = resources.static_dir()
 PAGE = """
 <link rel="icon" href="static/icon.svg" />
 <link rel="stylesheet" href="static/styles/base.css" />
@@ -20,24 +21,32 @@ PAGE = """
 """
 
 
-@pytest.fixture
-def folder(tmp_path: Path) -> Path:
+@pytest.fixture(scope="module")
+def page_server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[Running, Path]]:
+    """Serve the page of a folder to all tests of this module."""
+    folder, data = (tmp_path_factory.mktemp(name) for name in ("page", "data"))
     for name in ("js", "styles"):
-        (tmp_path / name).mkdir()
-    (tmp_path / "styles" / "base.css").write_text("a { color: red }")
-    (tmp_path / "styles" / "after.css").write_text("a { color: blue }")
-    (tmp_path / "index.html").write_text(PAGE)
-    (tmp_path / "js" / "main.js").write_text("one();")
-    return tmp_path
+        (folder / name).mkdir()
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(resources, "static_dir", lambda: folder)
+        with running(Settings(data_dir=data)) as server:
+            yield server, folder
 
 
 @pytest.fixture
-def client(
-    folder: Path, tmp_path_factory: pytest.TempPathFactory, monkeypatch: pytest.MonkeyPatch
-) -> Iterator[httpx.Client]:
-    monkeypatch.setattr(resources, "static_dir", lambda: folder)
-    settings = Settings(data_dir=tmp_path_factory.mktemp("data"))
-    with running(settings) as server, client_of(server.address) as client:
+def folder(page_server: tuple[Running, Path]) -> Path:
+    """Write the page anew."""
+    _, folder = page_server
+    (folder / "styles" / "base.css").write_text("a { color: red }")
+    (folder / "styles" / "after.css").write_text("a { color: blue }")
+    (folder / "index.html").write_text(PAGE)
+    (folder / "js" / "main.js").write_text("one();")
+    return folder
+
+
+@pytest.fixture
+def client(page_server: tuple[Running, Path], folder: Path) -> Iterator[httpx.Client]:
+    with client_of(page_server[0].address) as client:
         yield client
 
 
@@ -117,20 +126,20 @@ def test_scripts_come_without_comments_and_lines_keep_their_numbers(
 
 
 def test_no_line_of_a_template_looks_like_a_comment() -> None:
-    for file in (resources.static_dir() / "js").rglob("*.js"):
+    for file in (STATIC / "js").rglob("*.js"):
         for found in COMMENT.finditer(file.read_text(encoding="utf-8")):
             lines = [line.strip() for line in found[0].splitlines()]
             assert all(line.startswith(("//", "/*", "*")) for line in lines), found[0]
 
 
 def test_all_scripts_styles_and_pages_are_at_most_250_kb_on_their_way(
-    tmp_path: Path,
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    static = resources.static_dir()
+    monkeypatch.setattr(resources, "static_dir", lambda: STATIC)
     with running(Settings(data_dir=tmp_path)) as server, client_of(server.address) as client:
         page = client.get("/").text
         sheet = re.findall('rel="stylesheet" href="([^"]+)"', page)[0]
-        scripts = [each.relative_to(static).as_posix() for each in static.rglob("*.*js")]
+        scripts = [each.relative_to(STATIC).as_posix() for each in STATIC.rglob("*.*js")]
         paths = ["/", sheet, *(f"static/{each}" for each in scripts)]
         assert len(paths) > 100
         sizes = [int(client.get(path).headers["content-length"]) for path in paths]

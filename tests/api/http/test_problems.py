@@ -25,6 +25,9 @@ from app.server import create_app
 from app.settings import Settings
 from app.store import Conflict, NotFound, StoreUnavailable
 from tests.api.running import assert_problem
+from tests.api.shared_server import server, settings
+
+__all__ = ["server", "settings"]
 
 
 def operations(app: FastAPI) -> list[tuple[str, str]]:

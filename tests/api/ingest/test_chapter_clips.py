@@ -67,20 +67,6 @@ def test_chapters_become_one_clip_whose_video_plays(
     assert left == [clip_id]
 
 
-def test_a_resumable_upload_of_chapters_is_one_clip(
-    client: httpx.Client, chapters: tuple[Path, str], tmp_path: Path
-) -> None:
-    whole, sizes = chapters
-    content = whole.read_bytes()
-    place = begun(client, len(content), chapters=sizes)
-    assert sent(client, place, 0, content[:1000]).status_code == 204
-    answer = sent(client, place, 1000, content[1000:])
-    assert answer.status_code == 204, answer.text
-    clip_id = answer.headers["content-location"].rsplit("/", 1)[-1]
-    assert client.head(place, headers=TUS).headers["content-location"].endswith(clip_id)
-    assert frames_of(client, clip_id, tmp_path / "copy") == 13
-
-
 @pytest.mark.parametrize(
     ("sizes", "code"),
     [

@@ -136,9 +136,17 @@ def test_fields_that_say_what_they_cannot_are_refused(
     client: httpx.Client, settings: Settings, tmp_path: Path
 ) -> None:
     path = write_numbered(tmp_path / "dive.csv", recording(circle, frames=FRAMES))
-    for name, text in (("frame_rate", "fast"), ("frame_rate", "0"), ("frame_size", "wide")):
-        problem = assert_problem(upload(client, path, "dive.csv", **{name: text}), 422, INVALID)
-        assert name in str(problem["detail"])
+    for name, text, words in (
+        ("frame_rate", "fast", "frame_rate"),
+        ("frame_rate", "0", "frame_rate"),
+        ("frame_size", "wide", "frame_size"),
+        ("frame_size", "1x65535", "a width of 1"),
+        ("frame_size", "640x20000", "a height of more than 16384"),
+    ):
+        given = {"frame_rate": "30", name: text}
+        refused = upload(client, path, "dive.csv", **given)
+        assert refused.status_code == 422
+        assert words in str(refused.json()["detail"])
     assert_nothing_kept(client, settings)
 
 
@@ -161,19 +169,6 @@ def test_what_is_no_text_or_has_another_name_is_no_keypoint_file(
         problem = assert_problem(upload(client, path, name), 415, "unsupported_media_type")
         assert "OpenPose's folder as zip" in str(problem["detail"])
     assert_nothing_kept(client, settings)
-
-
-@pytest.mark.parametrize(
-    ("size", "reason"), [("1x65535", "a width of 1"), ("640x20000", "a height of more than 16384")]
-)
-def test_a_frame_size_that_cannot_be_drawn_is_refused_at_once(
-    client: httpx.Client, tmp_path: Path, size: str, reason: str
-) -> None:
-    arms = recording(circle, frames=FRAMES, landmarks=tuple(BODY))
-    path = packed(write_openpose(tmp_path / "json", arms, BODY_25))
-    answer = upload(client, path, path.name, frame_rate="30", frame_size=size)
-    assert answer.status_code == 422
-    assert reason in answer.json()["detail"]
 
 
 def test_no_gesture_is_read_across_a_hole_and_the_timeline_shows_it(

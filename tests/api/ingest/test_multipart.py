@@ -10,8 +10,8 @@ from hypothesis import strategies as st
 
 from app.api.ingest.multipart import LONGEST_NAME, MOST_PARTS, display_name
 from app.settings import Limits, Settings
-from tests.api.routes.clips.test_clips import CLIPS, assert_nothing_kept, upload
-from tests.api.running import Running, assert_problem, client_of, running, until
+from tests.api.routes.clips.test_clips import CLIPS, assert_nothing_kept
+from tests.api.running import Running, assert_problem, running, until
 
 FORM = {"Content-Type": "multipart/form-data; boundary=b"}
 PART = b'--b\r\nContent-Disposition: form-data; name="%s"; filename="x.mp4"\r\n\r\n'
@@ -47,38 +47,25 @@ def test_a_shown_name_is_short_visible_and_no_path(name: str) -> None:
     assert display_name(shown) == shown
 
 
-@pytest.mark.parametrize(
-    ("headers", "body"),
-    [
-        ({"Content-Type": "multipart/form-data"}, PART % b"file"),
-        ({"Content-Type": "multipart/form-data; boundary=" + "x" * 5000}, b""),
-        (FORM, b"no boundary in here at all"),
-        (FORM, PART % b"file" + b"cut short"),
-        (FORM, PART % b"other" + b"data\r\n--b--\r\n"),
-        (FORM, PART % b"file" + b"1\r\n" + PART % b"file" + b"2\r\n--b--\r\n"),
-        (FORM, (PART % b"note" + b"x\r\n") * (MOST_PARTS + 1) + b"--b--\r\n"),
-        (FORM, b"--b\r\n" + b"X-Header: " + b"y" * 20_000 + b"\r\n\r\n"),
-        (FORM, b"--b\r\n" + b"X: y\r\n" * 10_000 + b"\r\n"),
-    ],
-    ids=[
-        "no boundary",
-        "long boundary",
-        "no form",
-        "cut short",
-        "no file",
-        "two files",
-        "many parts",
-        "long header",
-        "many headers",
-    ],
-)
+MALFORMED = {
+    "no boundary": ({"Content-Type": "multipart/form-data"}, PART % b"file"),
+    "long boundary": ({"Content-Type": "multipart/form-data; boundary=" + "x" * 5000}, b""),
+    "no form": (FORM, b"no boundary in here at all"),
+    "cut short": (FORM, PART % b"file" + b"cut short"),
+    "no file": (FORM, PART % b"other" + b"data\r\n--b--\r\n"),
+    "two files": (FORM, PART % b"file" + b"1\r\n" + PART % b"file" + b"2\r\n--b--\r\n"),
+    "many parts": (FORM, (PART % b"note" + b"x\r\n") * (MOST_PARTS + 1) + b"--b--\r\n"),
+    "long header": (FORM, b"--b\r\n" + b"X-Header: " + b"y" * 20_000 + b"\r\n\r\n"),
+    "many headers": (FORM, b"--b\r\n" + b"X: y\r\n" * 10_000 + b"\r\n"),
+}
+
+
 @pytest.mark.withstands(row="H05")
-def test_a_malformed_form_is_400(
-    client: httpx.Client, settings: Settings, headers: dict[str, str], body: bytes
-) -> None:
-    answer = client.post(CLIPS, content=body, headers=headers)
-    assert_problem(answer, 400, "malformed_upload")
-    assert_nothing_kept(client, settings)
+def test_a_malformed_form_is_400(client: httpx.Client, settings: Settings) -> None:
+    for headers, body in MALFORMED.values():
+        answer = client.post(CLIPS, content=body, headers=headers)
+        assert_problem(answer, 400, "malformed_upload")
+        assert_nothing_kept(client, settings)
 
 
 def test_a_body_that_is_no_form_is_415(client: httpx.Client, small_clip: Path) -> None:
@@ -93,16 +80,6 @@ def test_small_fields_beside_the_file_are_ignored(client: httpx.Client, small_cl
     files = {"file": ("dive.mp4", small_clip.read_bytes())}
     answer = client.post(CLIPS, files=files, data={"note": "first dive"})
     assert answer.status_code == 202
-
-
-@pytest.mark.slow
-@pytest.mark.withstands(row="H06")
-def test_a_name_that_looks_like_a_path_is_only_shown(
-    client: httpx.Client, settings: Settings, small_clip: Path
-) -> None:
-    clip_id = upload(client, small_clip, name="../../../evil.mp4").json()["id"]
-    assert client.get(f"{CLIPS}/{clip_id}").json()["name"] == "evil.mp4"
-    assert not list(settings.data_dir.parent.rglob("*evil*"))
 
 
 def begin_upload(server: Running, length: int) -> socket.socket:
@@ -128,17 +105,6 @@ def test_a_sender_that_vanishes_leaves_nothing(
         until(lambda: partials(settings))
     until(lambda: not partials(settings))
     assert_nothing_kept(client, settings)
-
-
-def test_a_sender_that_stalls_is_dismissed(settings: Settings) -> None:
-    impatient = settings.model_copy(update={"limits": Limits(upload_grace_seconds=0.2)})
-    with running(impatient) as server, begin_upload(server, 100_000) as connection:
-        connection.settimeout(60)
-        answer = connection.recv(10_000)
-        assert answer.startswith(b"HTTP/1.1 408 ")
-        assert b'"upload_too_slow"' in answer or b'"upload_too_slow"' in connection.recv(10_000)
-        with client_of(server.address) as client:
-            assert_nothing_kept(client, impatient)
 
 
 @pytest.mark.withstands(row="H03")

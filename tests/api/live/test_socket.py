@@ -251,11 +251,6 @@ def test_what_is_no_frame_ends_the_view_with_a_reason(
     assert reason in closed[1]
 
 
-def test_pages_of_other_sites_may_not_watch(server: Running) -> None:
-    with pytest.raises(InvalidHandshake), live(server, "https://evil.example"):
-        pass
-
-
 def test_a_frame_is_refused_by_its_size_before_it_takes_memory() -> None:
     assert decode_frame(jpeg_of(np.zeros((1080, 1920, 3), np.uint8))).shape == (1080, 1920, 3)
     with pytest.raises(VideoError, match="JPEG of at most"):

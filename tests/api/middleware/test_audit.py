@@ -28,21 +28,6 @@ def refusing(server: Running, settings: Settings) -> Iterator[sqlite3.Connection
         yield database
 
 
-@pytest.mark.withstands(row="H22")
-def test_an_entry_that_the_database_refuses_is_kept_beside_it_and_taken_over(
-    client: httpx.Client, refusing: sqlite3.Connection, settings: Settings
-) -> None:
-    answer = client.post(LANGUAGES, json={"name": "pool"}, headers={"X-Request-ID": "first"})
-    assert answer.status_code == 201
-    assert '"first"' in (settings.data_dir / JOURNAL).read_text()
-    refusing.execute("DROP TRIGGER refuse")
-    client.delete(f"{LANGUAGES}/{answer.json()['id']}")
-    listed = client.get(AUDIT).json()
-    assert [each["method"] for each in listed] == ["DELETE", "POST"]
-    assert listed[1]["request_id"] == "first"
-    assert not (settings.data_dir / JOURNAL).exists()
-
-
 @pytest.mark.withstands(row="H21")
 def test_an_entry_that_was_kept_beside_the_database_is_there_after_the_next_start(
     settings: Settings,

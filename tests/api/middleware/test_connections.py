@@ -17,10 +17,12 @@ from tests.api.running import Running, client_of, running, until
 HEAD = "POST {path} HTTP/1.1\r\nHost: 127.0.0.1:{port}\r\nContent-Length: 1000\r\n"
 
 
-@pytest.fixture
-def impatient(settings: Settings) -> Iterator[Running]:
-    quick = {"limits": Limits(idle_seconds=0.5, upload_grace_seconds=0.5)}
-    with running(settings.model_copy(update=quick)) as server:
+@pytest.fixture(scope="module")
+def impatient(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Running]:
+    """Return one server for all tests of this module, which waits for half a second."""
+    folder = tmp_path_factory.mktemp("impatient")
+    quick = Limits(idle_seconds=0.5, upload_grace_seconds=0.5)
+    with running(Settings(data_dir=folder, samples_dir=folder / "none", limits=quick)) as server:
         yield server
 
 

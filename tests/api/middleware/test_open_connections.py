@@ -86,17 +86,8 @@ def withdraw(tokens: TokenFile, _settings: Settings) -> None:
     tokens.remove("Ada")
 
 
-def lose_the_list(_tokens: TokenFile, settings: Settings) -> None:
-    settings.tokens.unlink()
-
-
 def damage_the_list(_tokens: TokenFile, settings: Settings) -> None:
     settings.tokens.write_text("{")
-
-
-def replace_the_list_by_a_folder(_tokens: TokenFile, settings: Settings) -> None:
-    settings.tokens.unlink()
-    settings.tokens.mkdir()
 
 
 def replace_the_token(tokens: TokenFile, _settings: Settings) -> None:
@@ -108,9 +99,7 @@ def replace_the_token(tokens: TokenFile, _settings: Settings) -> None:
     "end",
     [
         withdraw,
-        lose_the_list,
         damage_the_list,
-        replace_the_list_by_a_folder,
         replace_the_token,
     ],
 )

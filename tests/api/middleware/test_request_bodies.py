@@ -9,6 +9,9 @@ import pytest
 
 from app.settings import Limits, Settings
 from tests.api.running import assert_problem, client_of, running
+from tests.api.shared_server import server, settings
+
+__all__ = ["server", "settings"]
 
 BODY = b'{"name": "' + b"x" * 5000 + b'"}'
 
@@ -128,10 +131,6 @@ def test_of_thirty_thousand_duplicate_keys_twenty_are_named(client: httpx.Client
     errors = problem["errors"]
     assert isinstance(errors, list)
     assert len(errors) == 20
-
-
-def test_a_plain_body_passes(client: httpx.Client) -> None:
-    assert post(client, '{"name": "pool"}').status_code == 201
 
 
 def test_a_key_against_double_requests_is_refused_where_it_is_not_understood(

@@ -15,6 +15,9 @@ import pytest
 
 from app.api.observation.logs import FIELDS, JsonFormatter, TextFormatter, job_id, request_id
 from tests.api.running import client_of, until
+from tests.api.shared_server import server, settings
+
+__all__ = ["server", "settings"]
 
 
 def record(message: str, **fields: object) -> logging.LogRecord:

@@ -11,7 +11,9 @@ import pytest
 from app.api.services.running_studio import Studio
 from app.store.models import now
 from tests.api.languages import LANGUAGES, add_gesture
-from tests.api.recordings import add_recorded_clip, recording_of
+from tests.api.shared_server import server, settings
+
+__all__ = ["server", "settings"]
 
 CLIPS = "/api/v1/clips"
 
@@ -44,27 +46,6 @@ def test_a_new_name_other_words_and_keypoints_change_nothing(
 ) -> None:
     change = {"label": "ring", "description": "round", "salient": ["left_wrist", "right_wrist"]}
     client.patch(f"{LANGUAGES}/{language_id}/gestures/circle", json=change)
-    assert source(client, language_id) == saved
-
-
-def test_a_copy_and_a_file_that_comes_back_know_it_too(
-    client: httpx.Client, language_id: str, saved: dict[str, Any]
-) -> None:
-    copy = client.post(f"{LANGUAGES}/{language_id}/duplicate").json()
-    exported = client.get(f"{LANGUAGES}/{language_id}/export").content
-    imported = client.post(f"{LANGUAGES}/import", content=exported).json()
-    assert [source(client, each["id"]) for each in (copy, imported)] == [saved, saved]
-
-
-def test_shown_anew_it_is_the_new_clip_and_after_going_back_the_old_one(
-    client: httpx.Client, studio: Studio, language_id: str, saved: dict[str, Any]
-) -> None:
-    anew = add_recorded_clip(studio, recording_of("circle backwards"))
-    place = f"{LANGUAGES}/{language_id}/gestures/circle"
-    changed = client.patch(place, json={"demonstration": {"clip_id": anew}}).json()
-    assert source(client, language_id)["clip_id"] == anew
-    to = {"revision": changed["revision"] - 1}
-    client.post(f"{LANGUAGES}/{language_id}/revert", json=to)
     assert source(client, language_id) == saved
 
 

@@ -18,7 +18,10 @@ from tests.api.invitations import INVITED, client_with, divers_of, invite, show,
 from tests.api.languages import LANGUAGES
 from tests.api.recordings import add_recorded_clip, recording_of
 from tests.api.running import Running, assert_problem, until
+from tests.api.shared_server import server, settings
 from tests.recognition.damaged_clips import write_clip
+
+__all__ = ["server", "settings"]
 
 pytestmark = pytest.mark.usefixtures("judged_soon")
 

@@ -2,7 +2,6 @@
 
 from pathlib import Path
 
-import httpx
 import pytest
 
 from app.recognition import Gesture, Language
@@ -24,13 +23,6 @@ def samples(settings: Settings) -> Path:
     (folder / "broken.json").write_text("{")
     write_clip(folder / "clips" / "circle_a.mp4")
     return folder
-
-
-@pytest.mark.usefixtures("samples")
-def test_a_new_user_finds_the_sample_languages(settings: Settings) -> None:
-    with running(settings) as server, client_of(server.address) as client:
-        (language,) = client.get(LANGUAGES).json()
-        assert (language["name"], language["sample"]) == ("Table 1", True)
 
 
 def test_samples_are_brought_once_and_later_ones_are_added(
@@ -79,10 +71,6 @@ def test_a_sample_whose_recording_comes_with_it_needs_no_models(
         until(lambda: client.get(f"{place}/{same}").json()["status"] == "done")
         assert len(client.get(f"{place}/{same}/takes").json()) == 1
         assert server.studio.samples.find_recording(samples / "clips" / "other.mp4") is None
-
-
-def test_without_samples_the_app_starts(client: httpx.Client) -> None:
-    assert client.get("/api/v1/samples").json() == []
 
 
 @pytest.mark.usefixtures("samples")

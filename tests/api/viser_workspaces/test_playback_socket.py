@@ -88,14 +88,6 @@ def test_what_is_no_wish_ends_the_connection(
         assert closed.value.rcvd.code == UNSUPPORTED_DATA
 
 
-def test_pages_of_other_sites_may_not_follow(server: Running, workspace_id: str) -> None:
-    with (
-        pytest.raises(InvalidHandshake),
-        clock_of(server, workspace_id, origin="https://evil.example") as clock,
-    ):
-        position(clock)
-
-
 def test_there_is_no_clock_without_a_workspace(server: Running) -> None:
     with pytest.raises(InvalidHandshake), clock_of(server, "nothing") as clock:
         position(clock)

@@ -123,7 +123,7 @@ def test_a_lack_of_memory_is_told_in_the_words_of_the_kind(
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="the limits of other systems differ")
-@pytest.mark.parametrize("memory", [250, 350, 450])
+@pytest.mark.parametrize("memory", [250, 450])
 def test_a_check_without_enough_memory_blames_the_language_and_no_clip(
     tmp_path: Path, memory: int
 ) -> None:

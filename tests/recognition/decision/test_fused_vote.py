@@ -28,7 +28,6 @@ from tests.recognition.strategies import (
     recording,
     recordings,
     rest,
-    square,
     wedge,
 )
 
@@ -51,17 +50,6 @@ def taught(**shapes: Shape) -> Recognizer:
 @pytest.fixture(scope="module")
 def recognizer() -> Recognizer:
     return taught(**SHAPES)
-
-
-@pytest.mark.parametrize("name", SHAPES)
-@pytest.mark.parametrize("seed", range(3))
-def test_another_diver_elsewhere_is_recognised(
-    recognizer: Recognizer, name: str, seed: int
-) -> None:
-    query = recording(
-        SHAPES[name], frames=95, rate=25, torso=60, centre=(200, 300), jitter=0.01, seed=seed
-    )
-    assert recognizer.recognize(query).label == name
 
 
 def test_a_circle_the_other_way_round_is_a_circle_where_there_is_only_one(
@@ -130,33 +118,6 @@ def test_each_voter_with_a_say_votes_for_its_nearest(recognizer: Recognizer) -> 
     for voter, label in result.votes.items():
         row = result.distances[VOTER_NAMES.index(voter)]
         assert result.gestures[int(row.argmin())] == label
-
-
-def test_the_demonstration_itself_is_at_distance_zero(recognizer: Recognizer) -> None:
-    result = recognizer.recognize(recording(circle))
-    np.testing.assert_allclose(result.distances[:, 0][np.isfinite(result.distances[:, 0])], 0.0)
-
-
-def test_the_order_of_gestures_does_not_decide() -> None:
-    turned = taught(**dict(reversed(list(SHAPES.items()))))
-    forward = taught(**SHAPES)
-    for shape in SHAPES.values():
-        query = recording(shape, jitter=0.03, seed=9, frames=40)
-        assert turned.recognize(query).label == forward.recognize(query).label
-
-
-def test_a_language_read_from_its_file_decides_as_before() -> None:
-    language = taught(**SHAPES).language
-    restored = Language.from_json(language.to_json())
-    query = recording(square, jitter=0.02)
-    before, after = (
-        Recognizer(each, "full").recognize(query).distances for each in (language, restored)
-    )
-    np.testing.assert_array_equal(after, before)
-
-
-def test_a_language_of_one_gesture_recognises_it() -> None:
-    assert taught(circle=circle).recognize(recording(circle, jitter=0.01)).label == "circle"
 
 
 def test_an_imported_image_matches_nothing_and_alone_is_read_by_paper() -> None:

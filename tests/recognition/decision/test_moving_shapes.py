@@ -125,20 +125,6 @@ def test_other_movements_are_recognised_without_a_hand_beside_twins() -> None:
     assert (result.label, result.fault) == ("corner", None)
 
 
-def test_an_unseen_hand_whose_shape_counts_always_is_told() -> None:
-    recognizer = Recognizer(
-        Language(
-            "pool",
-            [gesture("fist", draw(FIST, circle()), "on"), gesture("x", draw(FLAT, corner()))],
-        )
-    )
-    result = recognizer.recognize(without_hands(draw(FIST, circle(0.41), seed=5)))
-    assert result.label is None
-    assert result.nearest == "fist"
-    assert result.fault is not None
-    assert "no hand is seen" in result.fault
-
-
 def test_a_demonstration_without_hands_has_no_shape_that_could_count() -> None:
     blind = [
         gesture("fist", without_hands(draw(FIST, circle())), "on"),
@@ -183,15 +169,6 @@ def test_hand_voters_have_weight_and_votes_where_a_shape_counts() -> None:
     assert {result.votes[name] for name in HAND_VOTER_NAMES} == {"flat"}
     assert sum(result.weights.values()) == pytest.approx(1.0)
     np.testing.assert_allclose(result.scores[:2].argmin(), 1)
-
-
-def test_held_shapes_and_moving_ones_live_in_one_language() -> None:
-    language = twins()
-    held = Gesture.from_demonstration("two", hold(TWO))
-    recognizer = Recognizer(replace(language, gestures=[*language.gestures, held]))
-    assert recognizer.recognize(hold(TWO, seed=5)).label == "two"
-    assert recognizer.recognize(draw(FIST, circle(0.41), seed=5)).label == "fist"
-    assert recognizer.recognize(draw(FLAT, circle(0.41), seed=5)).label == "flat"
 
 
 def test_profile_paper_compares_no_shape() -> None:

@@ -64,12 +64,6 @@ def test_a_record_of_an_earlier_version_weighs_all_voters_the_same() -> None:
     assert Recognition.from_dict(content).weights == {"hu": 0.5, "zernike": 0.5}
 
 
-def test_a_rejected_query_has_no_label_but_a_nearest_gesture() -> None:
-    rejected = result(label=None).to_dict()
-    assert rejected["label"] is None
-    assert rejected["nearest"] == "circle"
-
-
 def between(*scores: float, **change: Any) -> Recognition:
     there = result(label=None).model_copy(
         update={"scores": np.array(scores), "novelty": np.full(len(scores), 0.5)}

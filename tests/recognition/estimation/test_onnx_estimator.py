@@ -133,19 +133,6 @@ def test_two_threads_give_the_same_as_one(
     parallel.close()
 
 
-def test_strides_do_not_matter(
-    estimator: OnnxPoseEstimator, signing: tuple[VideoFrame, ...]
-) -> None:
-    image = signing[0].image
-    padded = np.zeros((image.shape[0], image.shape[1] + 5, 3), np.uint8)
-    padded[:, :-5] = image
-    mirrored = np.ascontiguousarray(image[:, ::-1])
-    expected = estimator.estimate(image, 0.0)
-    for view in (padded[:, :-5], mirrored[:, ::-1]):
-        estimator.reset()
-        assert same(expected, estimator.estimate(view, 0.0))
-
-
 def test_the_image_is_not_written_to(
     estimator: OnnxPoseEstimator, signing: tuple[VideoFrame, ...]
 ) -> None:

@@ -337,7 +337,7 @@ def box() -> Recognizer:
     return Recognizer(drawn_language().without("square").with_gesture(drawn), "full")
 
 
-@settings(max_examples=40)
+@settings(max_examples=15)
 @given(
     st.integers(8, 30),
     st.floats(0.2, 0.8),

@@ -110,10 +110,6 @@ def test_another_divers_hand_tells_two_circles_apart(
     assert recognizer.recognize(take(f"{label}-{diver}")).label == label
 
 
-def test_a_circle_with_a_third_shape_is_neither(recognizer: Recognizer) -> None:
-    assert recognizer.recognize(take("two-2")).label is None
-
-
 def test_the_finger_is_named_that_makes_the_difference(recognizer: Recognizer) -> None:
     poses = take("flat-2")
     context = RecognitionContext(recognizer=recognizer, poses=poses, whole=poses)

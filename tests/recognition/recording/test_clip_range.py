@@ -41,14 +41,6 @@ def test_of_the_takes_only_the_one_that_is_meant_is_trimmed(
     assert [(bracket.start, bracket.end) for bracket in trimmed] == [(take.start, take.end)]
 
 
-def test_a_range_that_means_nothing_is_refused() -> None:
-    recording = recording_of("circle", "line")
-    with pytest.raises(AmbiguousRangeError, match="2 takes"):
-        find_clip_range(recording)
-    with pytest.raises(RangeError, match="no frames lie between 90 s"):
-        find_clip_range(recording, 90.0, 91.0)
-
-
 def test_without_a_range_the_only_take_is_meant() -> None:
     recording = recording_of("circle")
     (take,) = takes_in(recording)

@@ -13,10 +13,8 @@ from app.recognition.recording.segmentation import (
     LONGEST_TAKE,
     SHORTEST_TAKE,
     Bracket,
-    Take,
     TakeMachine,
     TakeState,
-    cut_take,
     takes_in,
 )
 from tests.recognition.motions import (
@@ -211,21 +209,6 @@ def test_trimming_can_be_left_out() -> None:
     (take,) = takes_in(recorded()[0], trim=False)
     assert (take.stroke_start, take.stroke_end) == (take.start, take.end)
     assert take.poses == take.untrimmed
-
-
-def test_a_stream_finds_the_takes_of_the_recording() -> None:
-    recording, _ = recorded()
-    machine = TakeMachine()
-    found: list[Take] = []
-    for index, (time, score) in enumerate(
-        zip(recording.poses.time.tolist(), recording.salute.tolist(), strict=True)
-    ):
-        bracket = machine.update(time, score)
-        if bracket is not None:
-            seen_so_far = recording.poses.between(0, recording.poses.time[index])
-            found.append(cut_take(seen_so_far, bracket))
-    (streamed,), (recalled,) = found, takes_in(recording)
-    assert streamed == recalled
 
 
 def test_an_empty_recording_has_no_takes() -> None:

@@ -110,12 +110,6 @@ def test_time_counts_from_the_first_frame_also_from_before_zero(tmp_path: Path) 
     assert [frame.time for frame in read(clip)[0]] == pytest.approx([0, 0.1, 0.2, 0.3])
 
 
-def test_a_thousand_frames_a_second_are_read_as_such(tmp_path: Path) -> None:
-    times = (np.arange(40) / 1000).tolist()
-    frames, _ = read(write_clip(tmp_path / "clip.mp4", frames=40, times=times))
-    assert [frame.time for frame in frames] == pytest.approx(times)
-
-
 def test_a_repeated_timestamp_is_repaired_and_reported(tmp_path: Path) -> None:
     times = [0, 0.04, 0.04, 0.08, 0.12]
     clip = write_clip(tmp_path / "clip.mkv", frames=5, times=times, codec="ffv1")
@@ -354,12 +348,12 @@ def test_a_damaged_motion_jpeg_of_a_fitting_size_is_damaged(tmp_path: Path) -> N
 @pytest.mark.parametrize(
     ("name", "codec"), [("clip.mp4", "libx264"), ("clip.webm", "libvpx"), ("clip.avi", "mpeg4")]
 )
-@pytest.mark.parametrize("seed", range(12))
+@pytest.mark.parametrize("seed", range(4))
 def test_flipped_bytes_give_frames_or_a_refusal(
     tmp_path: Path, name: str, codec: str, seed: int
 ) -> None:
     clip = write_clip(tmp_path / name, frames=20, codec=codec)
-    flipped(clip, seed, bytes_changed=4 ** (seed % 4))
+    flipped(clip, seed, bytes_changed=4**seed)
     try:
         frames, _ = read(clip)
     except VideoError:

@@ -108,37 +108,30 @@ def test_two_gestures_without_a_command_are_not_asked_about() -> None:
     assert dialogue().decide(between("wave", "circle", 1), 1).reply is Reply.one_of_two
 
 
-def test_a_gesture_is_confirmed_by_showing_it_again() -> None:
-    assert commands_of(shown("circle", 1), shown("circle", 6)) == [None, "photo"]
-
-
-def test_a_third_showing_begins_anew() -> None:
-    three = [shown("circle", second) for second in (1, 2, 3)]
-    assert commands_of(*three) == [None, "photo", None]
-
-
-def test_a_repetition_that_comes_too_late_is_the_first_of_a_new_pair() -> None:
-    assert commands_of(shown("circle", 1), shown("circle", 12), shown("circle", 13)) == [
-        None,
-        None,
-        "photo",
-    ]
-
-
-def test_another_gesture_takes_the_place_of_the_first() -> None:
-    gestures = [shown("circle", 1), shown("peak", 2), shown("circle", 3), shown("circle", 4)]
-    assert commands_of(*gestures) == [None, None, None, "photo"]
+@pytest.mark.parametrize(
+    ("showings", "commands"),
+    [
+        pytest.param(["circle 1", "circle 6"], [None, "photo"], id="again"),
+        pytest.param(["circle 1", "circle 2", "circle 3"], [None, "photo", None], id="thrice"),
+        pytest.param(["circle 1", "circle 12", "circle 13"], [None, None, "photo"], id="too late"),
+        pytest.param(
+            ["circle 1", "peak 2", "circle 3", "circle 4"], [None] * 3 + ["photo"], id="another"
+        ),
+        pytest.param(["circle 1", "cross 2", "circle 3"], [None] * 3, id="cancelled"),
+        pytest.param(["circle 1", "wave 2", "circle 3"], [None] * 3, id="without command"),
+        pytest.param(["circle 1", "circle 1"], [None, None], id="played again"),
+    ],
+)
+def test_a_gesture_is_confirmed_by_showing_it_again(
+    showings: list[str], commands: list[str | None]
+) -> None:
+    shows = (each.split() for each in showings)
+    assert commands_of(*(shown(label, float(second)) for label, second in shows)) == commands
 
 
 def test_a_rejected_take_in_between_changes_nothing() -> None:
     gestures = [shown("circle", 1), shown(None, 2), shown("circle", 3)]
     assert commands_of(*gestures) == [None, None, "photo"]
-
-
-@pytest.mark.parametrize("between", ["cross", "wave"])
-def test_a_cancel_or_a_gesture_without_command_takes_it_back(between: str) -> None:
-    gestures = [shown("circle", 1), shown(between, 2), shown("circle", 3)]
-    assert commands_of(*gestures) == [None, None, None]
 
 
 def test_an_emergency_is_given_at_once_and_takes_back_the_rest() -> None:
@@ -159,10 +152,6 @@ def test_a_stale_gesture_or_one_of_another_clock_is_ignored(now: float) -> None:
     decision = made.decide(shown("peak", 3), now)
     assert decision.command is None
     assert decision.reason.startswith("ignored")
-
-
-def test_a_gesture_that_is_played_again_is_ignored() -> None:
-    assert commands_of(shown("circle", 1), shown("circle", 1)) == [None, None]
 
 
 def test_a_gesture_of_another_language_is_ignored() -> None:

@@ -11,6 +11,9 @@ from app.api.services.running_studio import Studio
 from app.recognition import PoseSequence
 from tests.api.recordings import add_recorded_clip, recording_of
 from tests.api.running import assert_problem
+from tests.api.shared_server import server, settings
+
+__all__ = ["server", "settings"]
 
 
 def test_every_frame_has_its_moment_salute_and_speeds(client: httpx.Client, studio: Studio) -> None:

@@ -44,16 +44,6 @@ def test_a_held_shape_is_previewed_and_saved_as_a_hand(
     assert client.get(f"{gesture['thumbnail']}&marks=true").status_code == 200
 
 
-def test_a_held_shape_is_recognised_and_explained(
-    client: httpx.Client, studio: Studio, signs: str
-) -> None:
-    body = {"clip_id": add_sign(studio, "two-2"), "language_id": signs, "expected": "ok"}
-    result = client.post("/api/v1/recognitions", json=body).json()
-    assert result["label"] == "two"
-    explanation = client.get(f"/api/v1/recognitions/{result['id']}/explanation").json()
-    assert "than in 'ok'" in explanation["sentence"]
-
-
 def test_a_language_of_both_kinds_has_slate_report_contrast_and_export(
     client: httpx.Client, signs: str
 ) -> None:

@@ -14,7 +14,7 @@ from app.recognition.poses.frame import Hand
 from app.recognition.poses.landmarks import POSE_LANDMARKS
 from tests.api.languages import LANGUAGES, add_gesture
 from tests.api.recordings import add_recorded_clip, recording_of
-from tests.recognition.held_takes import FIST, FLAT, TWO
+from tests.recognition.held_takes import FIST, FLAT
 from tests.recognition.parametric_hand import Fingers, hand_xy
 
 PALM = 20.0
@@ -53,20 +53,6 @@ def switch(client: httpx.Client, language_id: str, label: str, position: str) ->
     )
 
 
-def recognize(client: httpx.Client, language_id: str, clip: str) -> dict[str, object]:
-    body = {"clip_id": clip, "language_id": language_id, "expected": "fist"}
-    found: dict[str, object] = client.post("/api/v1/recognitions", json=body).json()
-    return found
-
-
-def test_twins_are_recognised_by_the_hand_shape(
-    client: httpx.Client, studio: Studio, twins: str
-) -> None:
-    for seed, (label, shape) in enumerate((("fist", FIST), ("flat", FLAT), (None, TWO)), start=5):
-        clip = add_recorded_clip(studio, circle_with(shape, seed))
-        assert recognize(client, twins, clip)["label"] == label
-
-
 def test_the_editor_tells_what_the_switch_comes_to(client: httpx.Client, twins: str) -> None:
     place = f"{LANGUAGES}/{twins}/preview/health"
     words = {}
@@ -88,11 +74,3 @@ def test_a_demonstration_without_hands_is_told_where_its_shape_shall_count(
     view = client.post(f"{LANGUAGES}/{language_id}/preview/health", json=body).json()["switches"]
     assert view["hand_shape"]["counts"] is False
     assert view["hand_shape"]["words"].startswith("no hand is seen in the demonstration")
-
-
-def test_the_explanation_names_the_finger(client: httpx.Client, studio: Studio, twins: str) -> None:
-    result = recognize(client, twins, add_recorded_clip(studio, circle_with(FLAT, 7)))
-    place = f"/api/v1/recognitions/{result['id']}/explanation"
-    sentence = client.get(place).json()["sentence"]
-    assert "finger is bent" in sentence
-    assert "less than in 'fist'" in sentence

@@ -28,14 +28,6 @@ def signs(client: httpx.Client, studio: Studio, language_id: str) -> str:
     return language_id
 
 
-def recognize(
-    client: httpx.Client, language: str, clip: str, expected: str = "stop, hold"
-) -> dict[str, str]:
-    body = {"clip_id": clip, "language_id": language, "expected": expected}
-    found: dict[str, str] = client.post("/api/v1/recognitions", json=body).json()
-    return found
-
-
 def test_a_sequence_is_previewed_and_saved_with_a_picture_of_both_shapes(
     client: httpx.Client, studio: Studio, signs: str
 ) -> None:
@@ -51,25 +43,6 @@ def test_a_sequence_is_previewed_and_saved_with_a_picture_of_both_shapes(
     picture = decode_png(client.get(gestures[0]["thumbnail"]).content, (224, 224))
     assert picture[:, :80].any()
     assert picture[:, -80:].any()
-
-
-def test_a_take_of_three_shapes_is_refused_with_its_moments(
-    client: httpx.Client, studio: Studio, signs: str
-) -> None:
-    refused = add_gesture(client, signs, add_clip(studio, FLAT, FIST, TWO), "three")
-    assert refused.status_code == 422
-    assert "the third from" in refused.json()["detail"]
-
-
-def test_a_sequence_is_recognised_and_its_swap_is_explained(
-    client: httpx.Client, studio: Studio, signs: str
-) -> None:
-    right = recognize(client, signs, add_clip(studio, FLAT, FIST, seed=5))
-    assert right["label"] == "stop, hold"
-    swapped = recognize(client, signs, add_clip(studio, FIST, FLAT, seed=5))
-    assert swapped["label"] is None
-    place = f"/api/v1/recognitions/{swapped['id']}/explanation"
-    assert "The shapes come in the other order" in client.get(place).json()["sentence"]
 
 
 def test_a_language_with_a_sequence_has_slate_report_and_contrast(

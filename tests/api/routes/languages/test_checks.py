@@ -15,7 +15,7 @@ from tests.api.languages import many_gestures
 from tests.api.recordings import add_recorded_clip, recording_of
 from tests.api.running import Running, assert_problem, until
 from tests.conftest import ROOT
-from tests.recognition.demonstrations import pool, shown_by
+from tests.recognition.demonstrations import pool
 from tests.recognition.strategies import circle, line
 
 pytestmark = pytest.mark.slow
@@ -38,25 +38,6 @@ def test_a_language_is_checked(client: httpx.Client, imported: str) -> None:
     assert report["gestures"][0]["nearest"]["label"] == "line"
     assert report["forecast"]["right"] is None
     assert [gesture["label"] for gesture in report["gestures"]] == ["circle", "line"]
-
-
-def test_the_costs_of_the_limit_follow_the_dial(client: httpx.Client) -> None:
-    document = shown_by(("Ann", "Bo", "Cy")).to_json()
-    language = client.post(f"{LANGUAGES}/import", content=document).json()["id"]
-    five = client.get(f"{LANGUAGES}/{language}/check").json()["limit"]
-    client.patch(f"{LANGUAGES}/{language}", json={"most_refused": 0.5})
-    half = client.get(f"{LANGUAGES}/{language}/check").json()["limit"]
-    assert (five["people"], five["most_refused"], half["most_refused"]) == (3, 0.05, 0.5)
-    assert five["measured"] is half["measured"] is True
-    assert five["limit"] > half["limit"]
-    assert five["refused"]["rate"] < half["refused"]["rate"] == 0.5
-    assert half["refused"]["n"] == half["accepted"]["n"] == 12
-
-
-def test_one_person_gives_no_costs_of_the_limit(client: httpx.Client, imported: str) -> None:
-    limit = client.get(f"{LANGUAGES}/{imported}/check").json()["limit"]
-    assert limit["people"] == 1
-    assert limit["refused"] is limit["accepted"] is None
 
 
 def test_the_newest_report_is_not_sent_twice(client: httpx.Client, imported: str) -> None:
@@ -97,12 +78,6 @@ def test_an_older_revision_can_be_checked(client: httpx.Client, imported: str) -
     client.patch(f"{LANGUAGES}/{imported}", json={"name": "sea"})
     older = client.get(f"{LANGUAGES}/{imported}/check", params={"revision": 1})
     assert older.json()["language"] == "pool"
-
-
-def test_an_empty_language_is_not_ready(client: httpx.Client, language_id: str) -> None:
-    report = client.get(f"{LANGUAGES}/{language_id}/check").json()
-    assert report["ok"] is False
-    assert report["warnings"][0]["kind"] == "empty"
 
 
 def test_a_language_that_is_not_there_is_404(client: httpx.Client) -> None:

@@ -224,15 +224,6 @@ def test_signs_of_divers_are_proposed_for_their_own_meaning_or_where_nothing_els
     assert (own["gesture"], own["sign"]) == ("out of air", None)
 
 
-@pytest.mark.usefixtures("samples")
-def test_a_gesture_that_nothing_would_improve_gets_no_proposal(
-    client: httpx.Client, language_id: str, line_clip: str
-) -> None:
-    add_gesture(client, language_id, line_clip, "line")
-    found = propose(client, f"{LANGUAGES}/{language_id}", "line")
-    assert found == {"label": "line", "people": None, "replacements": []}
-
-
 def test_what_is_not_there_cannot_take_a_place(client: httpx.Client, alike: str) -> None:
     unknown = client.post(f"{alike}/replacements", json={"label": "spiral"})
     assert_problem(unknown, 404, "not_found")

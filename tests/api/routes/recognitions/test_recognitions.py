@@ -104,15 +104,6 @@ def test_a_recognition_outlives_what_its_language_becomes(
     assert [row["revision"] for row in listed] == [4, 3]
 
 
-def test_a_clip_without_salutes_is_recognised_whole(
-    client: httpx.Client, studio: Studio, spoken: str
-) -> None:
-    clip_id = add_recorded_clip(studio, recording_of())
-    refused = client.post(RECOGNITIONS, json={"clip_id": clip_id, "language_id": spoken})
-    # Nothing moves in this one: it is accepted, and reported as empty.
-    assert_problem(refused, 422, "poses_unusable")
-
-
 def test_what_cannot_be_recognised_says_why(
     client: httpx.Client, language_id: str, circle_clip: str, spoken: str
 ) -> None:
@@ -175,16 +166,6 @@ def test_a_recognition_is_explained_by_what_was_meant(
     ).json()
     assert as_it_was["right"]
     assert as_it_was["counterfactuals"] == []
-
-
-def test_an_explanation_is_by_the_language_as_it_was(
-    client: httpx.Client, spoken: str, line_clip: str
-) -> None:
-    body = {"clip_id": line_clip, "language_id": spoken, "expected": "line"}
-    kept = client.post(RECOGNITIONS, json=body).json()
-    client.delete(f"{LANGUAGES}/{spoken}/gestures/line")
-    why = client.get(f"{RECOGNITIONS}/{kept['id']}/explanation").json()
-    assert (why["label"], why["right"]) == ("line", True)
 
 
 def test_what_was_not_meant_to_be_anything_cannot_be_explained(
