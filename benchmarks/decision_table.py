@@ -22,8 +22,7 @@ from app.recognition.decision.fusion import add_second_opinion
 from app.recognition.decision.outcome import find_answer
 from app.recognition.decision.result import ScoreTable
 from app.recognition.voters.motion_voters import SecondOpinion
-from benchmarks.methods.ours import gesture_of
-from benchmarks.sets.one_shot_draws import Draw, draws
+from benchmarks.sets.one_shot_draws import Draw, demonstrated, draws
 from benchmarks.sets.recorded_sets import RecordedSet
 
 FEWER_RIGHT: Final = 0.005
@@ -93,10 +92,7 @@ class Compared:
 def compare(recorded: RecordedSet, chosen: Iterable[Draw]) -> Iterator[Compared]:
     """Compare the queries by others with drawn languages of all classes."""
     for draw in chosen:
-        gestures = [
-            gesture_of(str(recorded.labels[index]), recorded.recordings[index])
-            for index in draw.templates
-        ]
+        gestures = demonstrated(recorded, draw.templates)
         recognizer = Recognizer(Language(recorded.name, gestures), "full")
         for index in draw.others if len(draw.others) else draw.own:
             with (

@@ -17,8 +17,8 @@ from app.recognition.gestures.demonstration import condense
 from app.recognition.gestures.profile import Tuning
 from app.recognition.preprocessing.repair import repair_poses
 from app.recognition.voters.registry import VOTER_NAMES
-from benchmarks.accuracy.shared_sets import demonstrated
 from benchmarks.arguments import set_arguments
+from benchmarks.sets.one_shot_draws import demonstrated
 from benchmarks.sets.recorded_sets import RecordedSet, recorded_sets
 
 ALL = "all together"

@@ -1,156 +1,235 @@
-"""Comparison of methods: accuracy, time and memory on the same takes, in one run.
+"""Comparison of methods: what each says of the same takes, and what it costs, in one run.
 
-One template per class; `one_shot_draws` chooses templates and queries. Times are processor time of
-all threads, so that other programs on the machine do not count, relative to profile ``full`` on the
-same work. Memory is the peak of a process that imports a method, teaches it one language of ten
-digits and recognises ten queries.
+One person demonstrates every gesture of a set, or three people do; takes are by that person
+(`same`), and by people who show nothing (`another`; by anybody where people are not known). A take
+of the language is answered right, asked back, refused or answered wrong; *nearest* is the share
+whose nearest gesture is right. Of languages of a random half of the classes, takes of the other
+half (`near`), and for whole bodies movements of people who do not sign (`far`), are answered, asked
+back or refused. `one_shot_draws` draws people, demonstrations and takes, the same for all methods.
+
+Times are processor time of all threads, so that other programs on the machine do not count: of
+`fit` for a language, and of `predict` for a take, relative to profile ``full`` on the same work.
+The interval is Wilson's.
 
     python -m benchmarks.accuracy.comparison ../shared/data --draws 20 --queries 15 --seed 1
+    python -m benchmarks.accuracy.comparison ../shared/data --method package.module:Class
 
-The trained methods need the extra ``bench``; without it they are left out, and the reason is
-printed.
+How to write a method, and which sets these are: `docs/bench.md`. The trained methods need the extra
+``bench``; without it they are left out, and the reason is printed.
 """
 
 from __future__ import annotations
 
-import subprocess
-import sys
-from collections.abc import Iterable
+from collections import Counter, defaultdict
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
-from pathlib import Path
+from itertools import chain
 from statistics import fmean
 from time import process_time
 
 import numpy as np
-import numpy.typing as npt
 
 from app.evaluation.proportion import Share
+from app.recognition import OsgError, PoseSequence
+from benchmarks.accuracy.people import all_sets, is_of_bodies
 from benchmarks.arguments import set_arguments
-from benchmarks.methods import METHODS, new_method
-from benchmarks.methods.base import Method
-from benchmarks.sets.one_shot_draws import Draw, draws
-from benchmarks.sets.recorded_sets import RecordedSet, recorded_sets
+from benchmarks.methods import METHODS, find_method
+from benchmarks.methods.base import Demonstration, Method, Prediction
+from benchmarks.sets.drawn_sets import drawn_sets
+from benchmarks.sets.one_shot_draws import draw_several, draws
+from benchmarks.sets.recorded_sets import RecordedSet
+from benchmarks.sets.whole_body_sets import far_movements
 
 YARDSTICK = "full"
-QUERIES_OF_THE_CHILD = 10
-
-CHILD = """
-import resource, sys
-from pathlib import Path
-from benchmarks.accuracy.comparison import teach_and_ask_once
-teach_and_ask_once(sys.argv[1], Path(sys.argv[2]))
-print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss)
-"""
+PEOPLE = (1, 3)
+OF_THE_LANGUAGE = ("right", "asked", "refused", "wrong")
+OUT_OF_VOCABULARY = ("answered", "asked", "refused")
 
 
-@dataclass
-class Outcome:
-    """Results of one method.
+class MethodError(Exception):
+    """A method failed, or answered what is not in the language."""
+
+
+@dataclass(frozen=True, eq=False)
+class Language:
+    """A language that a method learns, and takes to ask it about.
 
     Attributes
     ----------
-    own, others
-        Per set: shares right for queries by the person who demonstrated, and by everybody else.
-    adding, asking
-        Seconds of processor time: for adding the last gesture of each language, with all work that
-        it makes necessary, and for each query.
+    demonstrations
+        What it learns.
+    takes
+        By relation: label and take; the label is empty where the movement is no gesture.
 
     """
 
-    own: dict[str, Share] = field(default_factory=dict)
-    others: dict[str, Share] = field(default_factory=dict)
-    adding: list[float] = field(default_factory=list)
-    asking: list[float] = field(default_factory=list)
+    demonstrations: list[Demonstration]
+    takes: dict[str, list[tuple[str, PoseSequence]]]
 
 
-def measure(name: str, sets: Iterable[tuple[RecordedSet, list[Draw]]]) -> Outcome:
-    """Teach a method every drawn language and let it recognise every query."""
-    outcome = Outcome()
-    new_method(name)  # imports on first use must not count for the first gesture
-    for recorded, drawn in sets:
-        own, others = Share(0, 0), Share(0, 0)
-        for draw in drawn:
-            method = new_method(name)
-            outcome.adding.append(_teach(method, recorded, draw.templates))
-            own += _ask(method, recorded, draw.own, outcome.asking)
-            others += _ask(method, recorded, draw.others, outcome.asking)
-        outcome.own[recorded.name], outcome.others[recorded.name] = own, others
-    return outcome
+@dataclass
+class Outcomes:
+    """What a method said of a set's takes.
+
+    Attributes
+    ----------
+    nearest
+        By relation: takes of gestures of the language, by whether their nearest gesture is right.
+    counts
+        By relation: takes by outcome.
+    fitting, predicting
+        Seconds of processor time for each language, and for each take.
+
+    """
+
+    nearest: dict[str, Counter[bool]] = field(default_factory=lambda: defaultdict(Counter))
+    counts: dict[str, Counter[str]] = field(default_factory=lambda: defaultdict(Counter))
+    fitting: list[float] = field(default_factory=list)
+    predicting: list[float] = field(default_factory=list)
 
 
-def _teach(method: Method, recorded: RecordedSet, templates: list[int]) -> float:
-    """Teach a language and return the seconds that its last gesture took."""
-    start = process_time()
-    for template in templates:
+def draw_languages(
+    recorded: RecordedSet, far: RecordedSet, count: int, queries: int, seed: int
+) -> Iterator[Language]:
+    """Draw languages of all classes by one person and by three, and of half of them by one."""
+
+    def of(takes: Sequence[int]) -> list[tuple[str, PoseSequence]]:
+        return [(str(recorded.labels[each]), recorded.recordings[each]) for each in takes]
+
+    for number, chosen in enumerate(draws(recorded, count, queries, seed)):
+        several = draw_several(recorded, chosen, max(PEOPLE), queries, seed + number)
+        asked = of(several.queries.tolist())
+        for people in (each for each in PEOPLE if each <= len(several.takes)):
+            takes = {f"another, {people}": asked}
+            if people == 1:
+                takes["same"] = of(chosen.own.tolist())
+            shown = chain.from_iterable(several.rows(people))
+            yield Language(recorded.show([*shown]), takes)
+        shown = chain.from_iterable(several.rows(1))
+        half = [each for each in recorded.show([*shown]) if each.label in several.half]
+        takes = {"near": [each for each in asked if each[0] not in several.half]}
+        if is_of_bodies(recorded):
+            order = np.random.default_rng(seed + number).permutation(len(far.recordings))
+            takes["far"] = [("", far.recordings[each]) for each in order[:queries]]
+        yield Language(half, takes)
+
+
+def measure(make: Callable[[], Method], languages: Sequence[Language]) -> Outcomes:
+    """Teach a method every language and let it say what every take is.
+
+    Raises
+    ------
+    MethodError
+        When it fails, or answers a label that is not in the language.
+
+    """
+    outcomes = Outcomes()
+    for language in languages:
+        method, labels = make(), {each.label for each in language.demonstrations}
         start = process_time()
-        method.add(str(recorded.labels[template]), recorded.recordings[template])
-    method.prepare()
-    return process_time() - start
+        method.fit(language.demonstrations)
+        outcomes.fitting.append(process_time() - start)
+        for relation, takes in language.takes.items():
+            for label, take in takes:
+                start = process_time()
+                said = _predict(method, take)
+                outcomes.predicting.append(process_time() - start)
+                named = {said.label, said.nearest, *(said.pair or ())} - {None}
+                if not named <= labels:
+                    raise MethodError(f"{named - labels} is not in the language {sorted(labels)}")
+                outcomes.counts[relation][judge(said, label, label in labels)] += 1
+                if label in labels:
+                    outcomes.nearest[relation][said.nearest == label] += 1
+    return outcomes
 
 
-def _ask(
-    method: Method, recorded: RecordedSet, queries: npt.NDArray[np.intp], times: list[float]
-) -> Share:
-    correct = 0
-    for query in queries:
-        start = process_time()
-        answer = method.answer(recorded.recordings[query])
-        times.append(process_time() - start)
-        correct += answer == recorded.labels[query]
-    return Share(correct, len(queries))
+def _predict(method: Method, take: PoseSequence) -> Prediction:
+    try:
+        return method.predict(take)
+    except OsgError:
+        return Prediction()
+    except Exception as error:
+        raise MethodError(f"{type(error).__name__} of `predict`: {error}") from error
 
 
-def teach_and_ask_once(name: str, data: Path) -> None:
-    """Run the work whose memory is measured."""
-    recorded = next(iter(recorded_sets(data / "trajectories")))
-    (draw,) = draws(recorded, 1, QUERIES_OF_THE_CHILD, seed=1)
-    method = new_method(name)
-    _teach(method, recorded, draw.templates)
-    _ask(method, recorded, draw.own, [])
+def judge(said: Prediction, label: str, known: bool) -> str:
+    """Return the outcome of a take of a gesture of the language, or of none."""
+    if said.label is not None:
+        return ("right" if said.label == label else "wrong") if known else "answered"
+    return "asked" if said.pair is not None else "refused"
 
 
-def peak_memory(name: str, data: Path) -> float:
-    """Return the peak resident memory of a process that uses the method, in the system's unit."""
-    child = subprocess.run(
-        [sys.executable, "-c", CHILD, name, str(data)], check=True, capture_output=True, text=True
+def format_nearest(outcomes: Outcomes) -> str:
+    """Return the shares right of the same person's takes, and of others' with one and three."""
+    relations = ("same", *(f"another, {people}" for people in PEOPLE))
+    counts = [outcomes.nearest[each] for each in relations]
+    return " / ".join(str(Share(each[True], each.total())) for each in counts)
+
+
+def format_outcomes(counts: Counter[str], names: Sequence[str]) -> str:
+    """Return the shares of outcomes in per cent, and the number of takes."""
+    if not counts:
+        return "-"
+    shares = " / ".join(f"{100 * counts[name] / counts.total():.1f}" for name in names)
+    return f"{shares}, n {counts.total()}"
+
+
+def print_set(recorded: RecordedSet, found: dict[str, Outcomes]) -> None:
+    """Print one row for each method, with its costs relative to the yardstick."""
+    people = len(np.unique(recorded.people))
+    print(f"\n## {recorded.name}, {people if people > 1 else 'unknown'} people\n")
+    print(
+        "| method | nearest: same / another, 1 person / 3 people | 1 person: right / asked / "
+        "refused / wrong | 3 people | near: answered / asked / refused | far | fit | predict |"
     )
-    return float(child.stdout)
+    print("| --- " * 8 + "|")
+    first = found[YARDSTICK]
+    for name, outcomes in found.items():
+        cells = [name, format_nearest(outcomes)]
+        cells += [
+            format_outcomes(outcomes.counts[f"another, {people}"], OF_THE_LANGUAGE)
+            for people in PEOPLE
+        ]
+        cells += [
+            format_outcomes(outcomes.counts[each], OUT_OF_VOCABULARY) for each in ("near", "far")
+        ]
+        cells += [
+            f"{fmean(mine) / fmean(theirs):.2g}"
+            for mine, theirs in (
+                (outcomes.fitting, first.fitting),
+                (outcomes.predicting, first.predicting),
+            )
+        ]
+        print(f"| {' | '.join(cells)} |", flush=True)
 
 
 def main() -> None:
-    """Print one Markdown table, one row a method."""
+    """Print a table for each set, one row a method."""
     parser = set_arguments(__doc__, draws=20, queries=15)
     parser.add_argument("--methods", nargs="+", choices=METHODS, default=METHODS)
+    parser.add_argument(
+        "--method", action="append", default=[], help="one of your own, package.module:Class"
+    )
     given = parser.parse_args()
-    sets = [
-        (recorded, list(draws(recorded, given.draws, given.queries, given.seed)))
-        for recorded in recorded_sets(given.data / "trajectories", given.sets)
-    ]
-    names = [recorded.name for recorded, _ in sets]
-    yardstick = measure(YARDSTICK, sets)
-    used = peak_memory(YARDSTICK, given.data)
-    print(f"{given.draws} languages a set, {given.queries} queries a language and kind")
-    print("| method | " + " | ".join(names) + " | adding | query | memory |")
-    print("| --- " * (len(names) + 4) + "|")
-    for name in given.methods:
+    makers: dict[str, Callable[[], Method]] = {}
+    for name in dict.fromkeys((YARDSTICK, *given.methods, *given.method)):
         try:
-            outcome = yardstick if name == YARDSTICK else measure(name, sets)
-        except ModuleNotFoundError as error:
-            print(f"| {name} | left out: {error.name} is not installed (extra `bench`) |")
+            makers[name] = find_method(name)
+        except (ModuleNotFoundError, AttributeError, ValueError) as error:
+            print(f"{name} is left out: {error}")
+    folder = given.data / "trajectories"
+    far = far_movements(folder)
+    for recorded in chain(all_sets(folder, given.sets), drawn_sets()):
+        if given.sets and recorded.name not in given.sets:
             continue
-        cells = [_accuracy(outcome, each) for each in names]
-        ratios = (
-            fmean(outcome.adding) / fmean(yardstick.adding),
-            fmean(outcome.asking) / fmean(yardstick.asking),
-            peak_memory(name, given.data) / used,
-        )
-        cells += [f"{ratio:.2g}" for ratio in ratios]
-        print(f"| {name} | " + " | ".join(cells) + " |", flush=True)
-
-
-def _accuracy(outcome: Outcome, name: str) -> str:
-    own, others = outcome.own[name], outcome.others[name]
-    return f"{own} / {others}" if others.asked else str(own)
+        languages = [*draw_languages(recorded, far, given.draws, given.queries, given.seed)]
+        found: dict[str, Outcomes] = {}
+        for name, make in makers.items():
+            try:
+                found[name] = measure(make, languages)
+            except MethodError as error:
+                print(f"{name} has no row for {recorded.name}: {error}")
+        print_set(recorded, found)
 
 
 if __name__ == "__main__":

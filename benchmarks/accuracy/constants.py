@@ -42,8 +42,7 @@ from app.recognition.voters.registry import MOTION_VOTERS
 from benchmarks.accuracy.people import all_sets, is_of_bodies, recognize
 from benchmarks.arguments import set_arguments
 from benchmarks.decision_table import compare_all, print_table
-from benchmarks.methods.ours import gesture_of
-from benchmarks.sets.one_shot_draws import Draw, draws
+from benchmarks.sets.one_shot_draws import Draw, demonstrated, draws
 from benchmarks.sets.recorded_sets import DOMAINS, RecordedSet
 from benchmarks.sets.rendered_clips import CLIPS, rendered_clips
 from benchmarks.sets.simulated_bodies import CARRIED_DOMAINS
@@ -148,11 +147,7 @@ def ask(recorded: RecordedSet, given: argparse.Namespace) -> Iterator[Asked]:
             with suppress(PoseError):
                 queries.append(condense(repair_poses(recorded.recordings[index]).trajectory))
                 right.append(str(recorded.labels[index]))
-        gestures = [
-            gesture_of(str(recorded.labels[index]), recorded.recordings[index])
-            for index in chosen.templates
-        ]
-        yield Asked(gestures, queries, right)
+        yield Asked(demonstrated(recorded, chosen.templates), queries, right)
 
 
 def print_voters(data: Mapping[str, Sequence[Asked]]) -> None:
@@ -245,11 +240,7 @@ def decide(recorded: RecordedSet, far: RecordedSet, given: argparse.Namespace) -
     for chosen in draws(recorded, given.draws, given.queries, given.seed):
         labels = {index: str(recorded.labels[index]) for index in chosen.templates}
         kept = set(generator.choice([*labels.values()], max(2, len(labels) // 2), replace=False))
-        gestures = [
-            gesture_of(label, recorded.recordings[index])
-            for index, label in labels.items()
-            if label in kept
-        ]
+        gestures = demonstrated(recorded, [each for each in labels if labels[each] in kept])
         shipped = LIMIT_OF_ARMS if FusedVote(gestures).references.sees_arms else LIMIT_OF_HANDS
         recognizer = Recognizer(Language(recorded.name, gestures), "full")
         asked = [*recognize(recognizer, recorded, others_or_own(chosen))]

@@ -30,8 +30,7 @@ from app.recognition import (
 )
 from app.recognition.gestures.profile import Tuning
 from app.recognition.preprocessing.repair import swap_sides
-from benchmarks.accuracy.shared_sets import demonstrated
-from benchmarks.sets.one_shot_draws import draws
+from benchmarks.sets.one_shot_draws import demonstrated, draws
 from benchmarks.sets.recorded_sets import recorded_sets
 from languages.build import FOLDER, TABLE_2
 

@@ -32,8 +32,7 @@ from app.recognition.poses.landmarks import WRISTS, other_side
 from app.recognition.poses.sequence import FloatArray
 from benchmarks.accuracy.people import all_sets
 from benchmarks.arguments import set_arguments
-from benchmarks.methods.ours import gesture_of
-from benchmarks.sets.one_shot_draws import draws
+from benchmarks.sets.one_shot_draws import demonstrated, draws
 from benchmarks.sets.recorded_sets import RecordedSet
 from benchmarks.sets.whole_body_sets import ARM_CLASSES, whole_body_sets
 
@@ -222,10 +221,7 @@ class Drawn:
 def draw_languages(recorded: RecordedSet, count: int, queries: int, seed: int) -> Iterator[Drawn]:
     """Draw languages of a set."""
     for drawn in draws(recorded, count, queries, seed):
-        gestures = [
-            gesture_of(str(recorded.labels[each]), recorded.recordings[each])
-            for each in drawn.templates
-        ]
+        gestures = demonstrated(recorded, drawn.templates)
         recognizer = Recognizer(Language(recorded.name, gestures), "full")
         right = [
             index
@@ -336,10 +332,7 @@ def name_turned(recorded: RecordedSet, folder: Any, drawn: Drawn) -> Iterator[tu
         next(whole_body_sets(folder, [recorded.name], degrees, depth=0.03))
         for degrees in (0.0, TURN)
     )
-    gestures = [
-        gesture_of(str(near.labels[each]), near.recordings[each]) for each in drawn.templates
-    ]
-    recognizer = Recognizer(Language(recorded.name, gestures), "full")
+    recognizer = Recognizer(Language(recorded.name, demonstrated(near, drawn.templates)), "full")
     for index in drawn.right[: 2 * PER_LANGUAGE]:
         first = name_first(recognizer, far.recordings[index], str(far.labels[index]))
         yield str(near.people[index]), first or "unread"

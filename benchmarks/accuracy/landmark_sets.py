@@ -34,8 +34,7 @@ from app.recognition.estimation.factory import create_estimator
 from app.recognition.gestures.profile import PROFILES
 from app.recognition.poses.landmarks import POSE_LANDMARKS
 from app.recognition.poses.skeletons import COCO_17
-from benchmarks.methods.ours import gesture_of
-from benchmarks.sets.one_shot_draws import draws
+from benchmarks.sets.one_shot_draws import demonstrated, draws
 from benchmarks.sets.recorded_sets import RecordedSet, recorded_sets
 
 SAMPLES = Path(__file__).parents[2] / "languages" / "clips"
@@ -108,10 +107,7 @@ def report_natops(folder: Path, count: int, queries: int, seed: int) -> None:
         for profile in PROFILES:
             found: list[Reading] = []
             for draw in draws(recorded, count, queries, seed):
-                gestures = [
-                    gesture_of(str(recorded.labels[template]), recorded.recordings[template])
-                    for template in draw.templates
-                ]
+                gestures = demonstrated(recorded, draw.templates)
                 asked = [
                     (str(recorded.labels[query]), recorded.recordings[query]) for query in draw.own
                 ]

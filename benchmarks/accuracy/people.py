@@ -49,7 +49,6 @@ import numpy.typing as npt
 from app.evaluation.proportion import Share
 from app.recognition import (
     Gesture,
-    GestureError,
     Language,
     PoseError,
     Recognition,
@@ -67,7 +66,7 @@ from app.recognition.health.forecast import (
 )
 from app.recognition.health.forecast import judge as find_outcome
 from benchmarks.arguments import set_arguments
-from benchmarks.methods.ours import gesture_of
+from benchmarks.methods.ours import teach
 from benchmarks.methods.plain_dtw import plain_dtw
 from benchmarks.sets.held_signs import HAND_LETTERS, hand_letters_set
 from benchmarks.sets.one_shot_draws import Draw, SeveralPeople, draw_several, draws
@@ -113,18 +112,7 @@ Counts = dict[tuple[str, str], dict[int, list[int]]]
 
 def define(recorded: RecordedSet, takes: Sequence[int]) -> Gesture:
     """Make a gesture of one take or several, with the people who show them."""
-    first, *others = takes
-    diver = str(recorded.people[first])
-    gesture = replace(
-        gesture_of(str(recorded.labels[first]), recorded.recordings[first]), diver=diver
-    )
-    for take in others:
-        poses, diver = recorded.recordings[take], str(recorded.people[take])
-        try:
-            gesture = gesture.with_demonstration(poses, diver=diver)
-        except GestureError:
-            gesture = gesture.with_demonstration(poses, diver=diver, salient=poses.landmarks)
-    return gesture
+    return teach(recorded.show(takes))
 
 
 def judge(result: Recognition | None, label: str, ratio: float) -> Found:

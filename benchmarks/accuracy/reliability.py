@@ -23,8 +23,8 @@ import numpy.typing as npt
 
 from app.recognition import Language, PoseError, Recognizer
 from app.recognition.poses.sequence import FloatArray
-from benchmarks.accuracy.shared_sets import demonstrated
 from benchmarks.arguments import set_arguments
+from benchmarks.sets.one_shot_draws import demonstrated
 from benchmarks.sets.recorded_sets import RecordedSet, recorded_sets
 
 REFUSED = 0.05

@@ -24,7 +24,7 @@ from app.recognition import Language, Recognizer
 from app.recognition.estimation.factory import create_estimator
 from app.recognition.recording.video import read_frames
 from app.recognition.spotting import Spotted, Spotter
-from benchmarks.accuracy.shared_sets import demonstrated
+from benchmarks.sets.one_shot_draws import demonstrated
 from benchmarks.sets.recorded_sets import RecordedSet, recorded_sets
 from benchmarks.sets.streams import Event, Stream, compose, with_body
 from languages.build import FOLDER

@@ -117,12 +117,12 @@ def published_steps(
 ) -> Callable[[], object] | None:
     """Return a function that labels a query by the published steps; None without mahotas."""
     try:
+        from benchmarks.methods.base import Demonstration
         from benchmarks.methods.published import PublishedCode
     except ModuleNotFoundError:
         return None
     method = PublishedCode()
-    for number, demonstration in enumerate(demonstrations):
-        method.add(f"figure {number}", demonstration)
+    method.fit([Demonstration(f"figure {at}", each) for at, each in enumerate(demonstrations)])
     frames = method.gather(query)  # as they arrive there, one by one
     return lambda: method.name(frames)
 

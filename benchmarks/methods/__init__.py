@@ -14,36 +14,36 @@ from benchmarks.methods.ours import OurProfile
 
 _OTHERS: Final = MappingProxyType(
     {
-        "published": "published.PublishedCode",
-        "dtw": "plain_warping.PlainWarping",
-        "jackknife": "jackknife.Jackknife",
-        "point cloud": "point_cloud.PointCloud",
-        "hmm": "hidden_markov.HiddenMarkov",
-        "svm": "support_vectors.SupportVectors",
-        "crf": "random_field.RandomField",
-        "bi-lstm": "bi_lstm.BiLstm",
+        "published": "benchmarks.methods.published:PublishedCode",
+        "dtw": "benchmarks.methods.plain_warping:PlainWarping",
+        "jackknife": "benchmarks.methods.jackknife:Jackknife",
+        "point cloud": "benchmarks.methods.point_cloud:PointCloud",
+        "hmm": "benchmarks.methods.hidden_markov:HiddenMarkov",
+        "svm": "benchmarks.methods.support_vectors:SupportVectors",
+        "crf": "benchmarks.methods.random_field:RandomField",
+        "bi-lstm": "benchmarks.methods.bi_lstm:BiLstm",
     }
 )
 
 METHODS: Final = (*PROFILES, *_OTHERS)
-"""Names for `new_method`."""
+"""Names of the methods that are compared by default."""
 
 
-def new_method(name: str) -> Method:
-    """Make a method that has not seen a gesture yet.
+def find_method(name: str) -> Callable[[], Method]:
+    """Find the class of a method: one of `METHODS`, or ``package.module:Class``.
 
     Only the packages of this method are imported: some are large, and in the extra ``bench``.
 
     Raises
     ------
     ModuleNotFoundError
-        When a package of the extra ``bench`` is not installed.
+        When its module, or a package of the extra ``bench``, is not installed.
+    AttributeError
+        When the module has no such class.
 
     """
-    factory: Callable[[], Method]
     if name in PROFILES:
-        factory = partial(OurProfile, name)
-    else:
-        module, of_class = _OTHERS[name].split(".")
-        factory = getattr(import_module(f"benchmarks.methods.{module}"), of_class)
-    return factory()
+        return partial(OurProfile, name)
+    module, _, of_class = _OTHERS.get(name, name).partition(":")
+    factory: Callable[[], Method] = getattr(import_module(module), of_class)
+    return factory

@@ -7,42 +7,36 @@ length that each coordinate travels, and its range. The rejection threshold is l
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from app.recognition import PoseSequence
 from app.recognition.matching.dtw import dtw_distances
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.trajectory import Trajectory
-from benchmarks.methods.base import Method
+from benchmarks.methods.base import NearestDemonstration
 from benchmarks.methods.steps import even_positions
 
 POINTS = 16
 BAND = 2
 
 
-class Jackknife(Method):
-    """Answers the reference with the least corrected distance."""
+class Jackknife(NearestDemonstration):
+    """The corrected distance."""
 
-    def __init__(self) -> None:
-        self._labels: list[str] = []
-        self._directions: list[FloatArray] = []
-        self._corrections: list[FloatArray] = []
+    def describe(self, demonstrations: Sequence[PoseSequence]) -> None:
+        """Keep directions and corrections."""
+        described = zip(*map(_describe, demonstrations), strict=True)
+        self._directions, self._corrections = map(np.array, described)
 
-    def add(self, label: str, demonstration: PoseSequence) -> None:
-        """Describe the demonstration."""
-        self._labels.append(label)
-        directions, corrections = _describe(demonstration)
-        self._directions.append(directions)
-        self._corrections.append(corrections)
-
-    def answer(self, query: PoseSequence) -> str:
-        """Return the label of the nearest reference."""
-        directions, corrections = _describe(query)
+    def measure(self, take: PoseSequence) -> FloatArray:
+        """Return the corrected distances ``(N,)``."""
+        directions, corrections = _describe(take)
         # The squared distance of unit vectors is twice (one minus the inner product).
-        warped = dtw_distances(directions, np.array(self._directions), BAND) / 2
-        alike = np.einsum("gcd,cd->gc", np.array(self._corrections), corrections)
-        factors = 1 / np.maximum(alike, 1e-9)
-        return self._labels[int((warped * factors.prod(axis=1)).argmin())]
+        warped = dtw_distances(directions, self._directions, BAND) / 2
+        alike = np.einsum("gcd,cd->gc", self._corrections, corrections)
+        return np.asarray(warped * (1 / np.maximum(alike, 1e-9)).prod(axis=1))
 
 
 def _describe(poses: PoseSequence) -> tuple[FloatArray, FloatArray]:

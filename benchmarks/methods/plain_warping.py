@@ -2,41 +2,33 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from app.recognition import PoseSequence
 from app.recognition.matching.dtw import dtw_distances
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.trajectory import Trajectory
-from benchmarks.methods.base import Method
+from benchmarks.methods.base import NearestDemonstration
 from benchmarks.methods.steps import directions, even_positions
 
 BAND = 8
 """Band of DTW, in steps of 32."""
 
 
-class PlainWarping(Method):
-    """Answers the reference with the least sum of two warped distances, each over its median."""
+class PlainWarping(NearestDemonstration):
+    """The sum of two warped distances, each over its median between demonstrations."""
 
-    def __init__(self) -> None:
-        self._labels: list[str] = []
-        self._references: list[list[FloatArray]] = []
-        self._medians = np.ones(2)
-
-    def add(self, label: str, demonstration: PoseSequence) -> None:
-        """Describe the demonstration."""
-        self._labels.append(label)
-        self._references.append(_describe(demonstration))
-
-    def prepare(self) -> None:
-        """Find the median of each distance between the gestures."""
+    def describe(self, demonstrations: Sequence[PoseSequence]) -> None:
+        """Find the median of each distance between the demonstrations."""
+        self._references = [_describe(each) for each in demonstrations]
         own = np.array([self._distances(each) for each in self._references])
         self._medians = np.median(own[~np.eye(len(own), dtype=bool)], axis=0)
 
-    def answer(self, query: PoseSequence) -> str:
-        """Return the label of the nearest reference."""
-        distances = self._distances(_describe(query)) / self._medians
-        return self._labels[int(distances.sum(axis=1).argmin())]
+    def measure(self, take: PoseSequence) -> FloatArray:
+        """Return the sums ``(N,)``."""
+        return np.asarray((self._distances(_describe(take)) / self._medians).sum(axis=1))
 
     def _distances(self, query: list[FloatArray]) -> FloatArray:
         """Return ``(G, 2)``."""

@@ -7,35 +7,31 @@ moment are combined into one point with more dimensions.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from app.recognition import PoseSequence
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.trajectory import Trajectory
-from benchmarks.methods.base import Method
+from benchmarks.methods.base import NearestDemonstration
 from benchmarks.methods.steps import STEPS, even_positions
 
 STARTS_EXPONENT = 0.5
 """Exponent of the number of starting points, as published."""
 
 
-class PointCloud(Method):
-    """Answers the cloud with the cheapest greedy matching, either way round."""
+class PointCloud(NearestDemonstration):
+    """The cheapest greedy matching of two clouds, either way round."""
 
-    def __init__(self) -> None:
-        self._labels: list[str] = []
-        self._clouds: list[FloatArray] = []
+    def describe(self, demonstrations: Sequence[PoseSequence]) -> None:
+        """Keep the points."""
+        self._clouds = [_cloud(each) for each in demonstrations]
 
-    def add(self, label: str, demonstration: PoseSequence) -> None:
-        """Keep the demonstration's points."""
-        self._labels.append(label)
-        self._clouds.append(_cloud(demonstration))
-
-    def answer(self, query: PoseSequence) -> str:
-        """Return the label of the nearest cloud."""
-        cloud = _cloud(query)
-        distances = [greedy_cloud_distance(cloud, other) for other in self._clouds]
-        return self._labels[int(np.argmin(distances))]
+    def measure(self, take: PoseSequence) -> FloatArray:
+        """Return the costs ``(N,)`` of the matchings."""
+        cloud = _cloud(take)
+        return np.array([greedy_cloud_distance(cloud, other) for other in self._clouds])
 
 
 def greedy_cloud_distance(one: FloatArray, other: FloatArray) -> float:

@@ -34,7 +34,7 @@ from app.recognition import PoseSequence
 from app.recognition.features.motion import parse_body_part
 from app.recognition.poses.landmarks import HIPS, SHOULDERS
 from app.recognition.poses.sequence import FloatArray
-from benchmarks.methods.base import Method
+from benchmarks.methods.base import Demonstration, Method, Prediction
 
 SIZE = 224
 MIN_MOVEMENT = 0.1
@@ -69,18 +69,13 @@ class _Reference:
 class PublishedCode(Method):
     """Majority vote of the seven shape voters, as the published implementation casts it."""
 
-    def __init__(self) -> None:
-        self._references: list[_Reference] = []
+    def fit(self, demonstrations: Sequence[Demonstration]) -> None:
+        """Draw and describe the demonstrations."""
+        self._references = [_describe(each) for each in demonstrations]
 
-    def add(self, label: str, demonstration: PoseSequence) -> None:
-        """Draw and describe the demonstration."""
-        salient = salient_keypoints(demonstration)
-        image = picture(frames_of(demonstration, salient), salient, REFERENCE_EDGES)
-        self._references.append(_Reference(label, salient, features(image)))
-
-    def answer(self, query: PoseSequence) -> str | None:
-        """Draw, describe and compare the query once for each gesture, and count the votes."""
-        return self.name(self.gather(query))
+    def predict(self, take: PoseSequence) -> Prediction:
+        """Draw, describe and compare the take once for each gesture, and count the votes."""
+        return Prediction(self.name(self.gather(take)))
 
     def gather(self, query: PoseSequence) -> Frames:
         """Convert a query to the published implementation's input, frame by frame.
@@ -98,6 +93,12 @@ class PublishedCode(Method):
         votes = np.argmin(rows, axis=0)
         (winner, _), *_ = Counter(votes.tolist()).most_common(1)
         return self._references[winner].label
+
+
+def _describe(shown: Demonstration) -> _Reference:
+    salient = salient_keypoints(shown.poses)
+    image = picture(frames_of(shown.poses, salient), salient, REFERENCE_EDGES)
+    return _Reference(shown.label, salient, features(image))
 
 
 def salient_keypoints(poses: PoseSequence) -> tuple[str, ...]:

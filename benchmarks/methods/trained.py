@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from abc import abstractmethod
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -10,7 +11,7 @@ from app.recognition import PoseSequence
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.trajectory import Trajectory
 from app.recognition.simulation.variation import draw_variants
-from benchmarks.methods.base import Method
+from benchmarks.methods.base import Demonstration, Method, Prediction
 from benchmarks.methods.steps import features
 
 VARIANTS = 30
@@ -19,30 +20,25 @@ all methods are trained on hundreds of languages in one run."""
 
 
 class TrainedOnVariants(Method):
-    """Draws variants when a gesture is added, and is trained anew on all of them."""
+    """Draws variants as other people's takes would differ, and is trained on all of them."""
 
-    def __init__(self) -> None:
-        self._labels: list[str] = []
-        self._sequences: list[FloatArray] = []
+    def fit(self, demonstrations: Sequence[Demonstration]) -> None:
+        """Train on the demonstrations and their variants."""
+        sequences: dict[str, list[FloatArray]] = {}
+        for number, each in enumerate(demonstrations):
+            shown = Trajectory.from_poses(each.poses).fill_gaps(np.inf)
+            drawn = draw_variants(shown, VARIANTS, seed=number, person="another")
+            sequences.setdefault(each.label, []).extend(features(one) for one in (shown, *drawn))
+        self._labels = [*sequences]
+        self.train([np.array(each) for each in sequences.values()])
 
-    def add(self, label: str, demonstration: PoseSequence) -> None:
-        """Draw variants as other people's takes would differ, and describe them."""
-        shown = Trajectory.from_poses(demonstration).fill_gaps(np.inf)
-        drawn = draw_variants(shown, VARIANTS, seed=len(self._labels), person="another")
-        self._labels.append(label)
-        self._sequences.append(np.array([features(each) for each in (shown, *drawn)]))
-
-    def prepare(self) -> None:
-        """Train on the variants of all gestures."""
-        self.train(self._sequences)
-
-    def answer(self, query: PoseSequence) -> str:
-        """Return the label of the likeliest gesture."""
-        return self._labels[self.likeliest(features(Trajectory.from_poses(query)))]
+    def predict(self, take: PoseSequence) -> Prediction:
+        """Answer the likeliest gesture."""
+        return Prediction(self._labels[self.likeliest(features(Trajectory.from_poses(take)))])
 
     @abstractmethod
     def train(self, sequences: list[FloatArray]) -> None:
-        """Fit the model to sequences ``(VARIANTS + 1, STEPS, D)`` of each of the G gestures."""
+        """Fit the model to the sequences ``(N, STEPS, D)`` of each of the G gestures."""
 
     @abstractmethod
     def likeliest(self, sequence: FloatArray) -> int:

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 
+from app.recognition import Gesture
+from benchmarks.methods.ours import teach
 from benchmarks.sets.recorded_sets import RecordedSet
 
 
@@ -105,6 +107,11 @@ def draw_several(
     half = generator.choice(classes, max(2, len(classes) // 2), replace=False)
     asked = generator.choice(pool, min(queries, len(pool)), replace=False)
     return SeveralPeople(takes, frozenset(map(str, half)), asked)
+
+
+def demonstrated(recorded: RecordedSet, takes: Sequence[int]) -> list[Gesture]:
+    """Make a gesture of each take of a set."""
+    return [teach([each]) for each in recorded.show(takes)]
 
 
 def find_complete_people(recorded: RecordedSet) -> npt.NDArray[np.str_]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -11,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from app.recognition import PoseSequence
+from benchmarks.methods.base import Demonstration
 
 FRAME = (640, 480)
 RATE = 30.0
@@ -45,6 +46,13 @@ class RecordedSet:
     recordings: list[PoseSequence]
     labels: npt.NDArray[np.str_]
     people: npt.NDArray[np.str_]
+
+    def show(self, takes: Sequence[int]) -> list[Demonstration]:
+        """Return recordings as demonstrations."""
+        return [
+            Demonstration(str(self.labels[each]), self.recordings[each], str(self.people[each]))
+            for each in takes
+        ]
 
 
 def recorded_sets(folder: Path, names: Collection[str] | None = None) -> Iterator[RecordedSet]:

@@ -42,8 +42,7 @@ from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.trajectory import Trajectory
 from app.recognition.simulation.variation import Person
 from app.recognition.voters.registry import VOTER_NAMES
-from benchmarks.accuracy.shared_sets import demonstrated
-from benchmarks.sets.one_shot_draws import draws
+from benchmarks.sets.one_shot_draws import demonstrated, draws
 from benchmarks.sets.recorded_sets import RecordedSet, recorded_sets
 from benchmarks.simulation.take_comparison import FEATURES, LOOKS, TakeComparison, demonstration_of
 from benchmarks.simulation.two_samples import coverage, kolmogorov_smirnov, separability

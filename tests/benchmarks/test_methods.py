@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from app.recognition import PoseSequence
-from benchmarks.methods import METHODS, new_method
-from benchmarks.methods.base import Method
+from benchmarks.methods import METHODS, find_method
+from benchmarks.methods.base import Demonstration, Method
 from benchmarks.methods.jackknife import Jackknife
 from benchmarks.methods.point_cloud import greedy_cloud_distance
 from benchmarks.sets.one_shot_draws import draws
@@ -19,7 +19,7 @@ TRAINED_FOR_LONG = {"hmm", "bi-lstm"}
 def available(name: str) -> Method:
     """Make a method, or skip where its packages are not installed."""
     try:
-        return new_method(name)
+        return find_method(name)()
     except ModuleNotFoundError as error:
         pytest.skip(f'needs {error.name}, which comes with the extra: pip install -e ".[bench]"')
 
@@ -39,10 +39,8 @@ def test_another_take_by_the_same_person_is_named(drawn: dict[str, RecordedSet],
     figures = drawn["one circle"]
     (draw,) = draws(figures, 1, 12, seed=2)
     method = available(name)
-    for template in draw.templates:
-        method.add(str(figures.labels[template]), figures.recordings[template])
-    method.prepare()
-    named = [method.answer(figures.recordings[query]) for query in draw.own]
+    method.fit(figures.show(draw.templates))
+    named = [method.predict(figures.recordings[query]).nearest for query in draw.own]
     assert np.mean(np.array(named) == figures.labels[draw.own]) >= 0.75
 
 
@@ -51,11 +49,11 @@ def test_jackknife_knows_a_swipe_from_the_same_one_turned_round(
 ) -> None:
     swipes = drawn["swipes"]
     method = Jackknife()
-    for label in ("left", "right"):
-        method.add(label, swipes.recordings[np.flatnonzero(swipes.labels == label)[0]])
+    first = {label: np.flatnonzero(swipes.labels == label)[0] for label in ("left", "right")}
+    method.fit([Demonstration(label, swipes.recordings[at]) for label, at in first.items()])
     right = swipes.recordings[np.flatnonzero(swipes.labels == "right")[1]]
-    assert method.answer(right) == "right"
-    assert method.answer(turned_round(right)) == "left"
+    assert method.predict(right).label == "right"
+    assert method.predict(turned_round(right)).label == "left"
 
 
 def test_a_cloud_matched_with_itself_in_another_order_costs_nothing() -> None:

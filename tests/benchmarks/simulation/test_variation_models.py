@@ -7,7 +7,7 @@ import pytest
 
 from app.recognition.poses.trajectory import Trajectory
 from app.recognition.simulation.variation import Person
-from benchmarks.accuracy.shared_sets import demonstrated
+from benchmarks.sets.one_shot_draws import demonstrated
 from benchmarks.sets.recorded_sets import RecordedSet
 from benchmarks.simulation.take_comparison import FEATURES, TakeComparison, demonstration_of
 from benchmarks.simulation.variation_models import MODELS, scaled
