@@ -269,6 +269,7 @@ class _AnnouncedServer(StudioServer):
 
 
 def _serve_page(app: FastAPI) -> None:
+    """Serve the page and that of invited people; nothing where `static` is not installed."""
     folder = resources.static_dir()
     if not folder.is_dir():
         return

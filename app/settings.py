@@ -195,7 +195,8 @@ class Settings(BaseSettings):
     under the same path."""
 
     undo_hours: Annotated[float, Field(ge=0)] = 24.0
-    """Hours for which deleted items can be restored; the next start then removes them."""
+    """Hours for which deleted items can be restored; a running server then removes them within ten
+    minutes."""
 
     limits: Limits = Limits()
     """Limits that few need to change, as a JSON object; those that are left out keep their default:

@@ -13,7 +13,7 @@ from collections import defaultdict
 
 import numpy as np
 
-from app.evaluation.proportion import Share
+from app.evaluation.share import Share
 from app.recognition import Language, Recognizer
 from benchmarks.accuracy.people import all_sets, count_people, define, recognize
 from benchmarks.arguments import set_arguments

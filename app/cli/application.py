@@ -19,10 +19,11 @@ from typer.main import get_command
 
 from app import __version__
 from app.cli.administration import DataDir, audit, backup, models_command, restore, tokens_command
+from app.cli.check import check
 from app.cli.demonstrations import define, demonstrations_command, trigger
 from app.cli.evaluate import evaluate
 from app.cli.extract import extract
-from app.cli.language_files import check, code, convert, phrase, samples, slate
+from app.cli.language_files import code, convert, phrase, samples, slate
 from app.cli.recognize import recognize
 from app.cli.robots.robot import robot, split_ros_arguments
 from app.cli.terminal import describe_error

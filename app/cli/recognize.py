@@ -32,7 +32,7 @@ from app.recognition.recording.recording import tell_clock
 from app.recognition.spotting import Spotter
 from app.recognition.text.described import DESCRIBED
 from app.recognition.text.wording import ask_twins
-from app.recognition.triggers.trigger import HOLD_SECONDS, SALUTE
+from app.recognition.triggers.trigger import POSE_SECONDS, SALUTE
 
 Seconds = Annotated[float, Field(ge=0, description="Seconds after the clip's first frame.")]
 
@@ -181,7 +181,7 @@ def explain_absence(
         words = recognizer.language.trigger.words
         tell(
             f"{path}: no take {words} found in {seconds}; hold "
-            f"the pose for at least {HOLD_SECONDS:g} s, or give the range: {path}@START-END"
+            f"the pose for at least {POSE_SECONDS:g} s, or give the range: {path}@START-END"
         )
 
 

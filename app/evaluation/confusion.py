@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from app.evaluation.proportion import Share
+from app.evaluation.share import Share
 
 CELL = 44
 """Width and height of a cell in SVG units; a count of four digits fits."""

@@ -270,6 +270,8 @@ class ClipStore(DatabaseStore):
     def restore(self, clip_id: str) -> None:
         """Bring a deleted clip back; nothing happens to one that is not deleted.
 
+        `Settings.undo_hours` says how long deleted clips are kept.
+
         Raises
         ------
         NotFound

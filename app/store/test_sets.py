@@ -1,4 +1,4 @@
-"""Store of takes whose gesture is known: the test set of each language, and practice."""
+"""Store of test sets: takes of each language whose gesture is known, and their results."""
 
 from __future__ import annotations
 
@@ -9,11 +9,7 @@ from dataclasses import dataclass
 from sqlmodel import Session, col, delete, select, update
 
 from app.store.database import DatabaseStore, NotFound, StoreError
-from app.store.models import Clip, LabelledResult, LabelledTake, PracticeTake, RecognitionRecord
-
-MOST_PRACTISED = 5000
-"""Number of a language's newest takes that are counted: an acceptance test of a hundred divers."""
-
+from app.store.models import Clip, LabelledResult, LabelledTake, RecognitionRecord
 
 MOST_TAKES = 500
 """Most takes of a language's test set: more would delay every change of the language by minutes."""
@@ -192,47 +188,3 @@ def _drop(session: Session, result: LabelledResult) -> None:
         session.execute(
             delete(RecognitionRecord).where(col(RecognitionRecord.id) == result.recognition_id)
         )
-
-
-class PracticeStore(DatabaseStore):
-    """Keeps practice takes in `database`; they are removed with the purged clips."""
-
-    def keep(self, take: PracticeTake) -> PracticeTake:
-        """Store a take; it replaces the same take recognised by the same revision."""
-        with self._database.writing() as session:
-            session.exec(
-                delete(PracticeTake).where(
-                    col(PracticeTake.language_id) == take.language_id,
-                    col(PracticeTake.revision) == take.revision,
-                    col(PracticeTake.clip_id) == take.clip_id,
-                    col(PracticeTake.start) == take.start,
-                )
-            )
-            session.add(take)
-        return take
-
-    def remove(self, language_id: str, take_id: str) -> None:
-        """Remove a take.
-
-        Raises
-        ------
-        NotFound
-            When the language has no such take.
-
-        """
-        with self._database.writing() as session:
-            take = session.get(PracticeTake, take_id)
-            if take is None or take.language_id != language_id:
-                raise NotFound(f"there is no practice take {take_id!r} of this language")
-            session.delete(take)
-
-    def of(self, language_id: str) -> list[PracticeTake]:
-        """Return the takes of a language, the newest first."""
-        with self._database.reading() as session:
-            query = (
-                select(PracticeTake)
-                .where(PracticeTake.language_id == language_id)
-                .order_by(col(PracticeTake.created).desc())
-                .limit(MOST_PRACTISED)
-            )
-            return list(session.exec(query))

@@ -22,7 +22,7 @@ from itertools import product
 
 import numpy as np
 
-from app.evaluation.proportion import Share
+from app.evaluation.share import Share
 from app.recognition import GestureError, Language, PoseSequence, Recognizer
 from app.recognition.explanation.blame import (
     LEAST_EVIDENCE,

@@ -29,7 +29,7 @@ from time import process_time
 
 import numpy as np
 
-from app.evaluation.proportion import Share
+from app.evaluation.share import Share
 from app.recognition import OsgError, PoseSequence
 from benchmarks.accuracy.people import all_sets, is_of_bodies
 from benchmarks.arguments import set_arguments

@@ -26,7 +26,7 @@ from unittest.mock import patch
 import numpy as np
 import numpy.typing as npt
 
-from app.evaluation.proportion import Share
+from app.evaluation.share import Share
 from app.recognition import Gesture, Language, PoseError, Recognizer
 from app.recognition.decision import fusion
 from app.recognition.decision.fused_vote import FusedVote

@@ -19,7 +19,7 @@ from itertools import product
 
 import numpy as np
 
-from app.evaluation.proportion import Share
+from app.evaluation.share import Share
 from app.recognition import Gesture, Language, PoseSequence, Recognizer
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.recording.segmentation import Bracket, Take, cut_take

@@ -21,7 +21,7 @@ from pathlib import Path
 import numpy as np
 
 from app.evaluation.labelled_takes import ClipRecorder
-from app.evaluation.proportion import Share
+from app.evaluation.share import Share
 from app.recognition import Gesture, GestureError, Language, PoseError, Recognition, Recognizer
 from benchmarks.sets.divers.diver_take import DiverTake
 from benchmarks.sets.divers.published_sets import find_set

@@ -21,7 +21,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from app.evaluation.proportion import Share
+from app.evaluation.share import Share
 from app.recognition import Gesture, Language, PoseError, PoseSequence, Recognizer
 from app.recognition.explanation.causes import EXPLAINED, find_causes
 from app.recognition.explanation.context import RecognitionContext

@@ -20,7 +20,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import NamedTuple
 
-from app.evaluation.proportion import Share
+from app.evaluation.share import Share
 from app.recognition import (
     Gesture,
     Language,

@@ -31,7 +31,7 @@ import cv2
 import numpy as np
 
 from app.evaluation.labelled_takes import ClipRecorder
-from app.evaluation.proportion import Share
+from app.evaluation.share import Share
 from app.recognition import Gesture, Language, OsgError, PoseSequence, Recognizer, Recording
 from app.recognition.explanation.context import KnownTake, KnownTakes, RecognitionContext
 from app.recognition.explanation.explanation import explain

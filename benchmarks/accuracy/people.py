@@ -46,7 +46,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from app.evaluation.proportion import Share
+from app.evaluation.share import Share
 from app.recognition import (
     Gesture,
     Language,

@@ -19,7 +19,7 @@ from time import perf_counter
 
 import numpy as np
 
-from app.evaluation.proportion import Share
+from app.evaluation.share import Share
 from app.recognition import Language, Recognizer
 from app.recognition.estimation.factory import create_estimator
 from app.recognition.recording.video import read_frames

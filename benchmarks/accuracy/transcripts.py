@@ -21,7 +21,7 @@ import cv2
 import numpy as np
 from pydantic import TypeAdapter
 
-from app.evaluation.proportion import Share
+from app.evaluation.share import Share
 from app.recognition import Language, PoseSequence
 from app.recognition.explanation.strokes import DIRECTIONS, Piece, transcribe
 from app.recognition.explanation.transcript import compare_transcripts, describe_strokes

@@ -16,7 +16,7 @@ from dataclasses import replace
 from itertools import product
 from pathlib import Path
 
-from app.evaluation.proportion import Share
+from app.evaluation.share import Share
 from app.recognition import Language, PoseError, PoseSequence, Recognizer
 from benchmarks.arguments import set_arguments
 from benchmarks.methods.ours import gesture_of

@@ -43,7 +43,7 @@ from unittest.mock import patch
 import cv2
 import numpy as np
 
-from app.evaluation.proportion import Share
+from app.evaluation.share import Share
 from app.recognition.estimation import factory
 from app.recognition.estimation.factory import create_estimator
 from app.recognition.estimation.landmark_models.arms import measure_body

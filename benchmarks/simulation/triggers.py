@@ -83,7 +83,7 @@ def count_in_signals(data: Path) -> Iterator[str]:
     for name, pose in POSES.items():
         often = sum(
             count_held(
-                trigger.HOLD_SECONDS,
+                trigger.POSE_SECONDS,
                 np.arange(len(path)) / FRAME_RATE,
                 pose.score(locate_joints(names, path)),
             )

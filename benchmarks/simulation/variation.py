@@ -34,7 +34,7 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
-from app.evaluation.proportion import Share
+from app.evaluation.share import Share
 from app.recognition.decision.fused_vote import FusedVote
 from app.recognition.decision.outcome import is_rejected
 from app.recognition.gestures.demonstration import condense

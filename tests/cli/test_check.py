@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from app.cli.language_files import format_report
+from app.cli.check import format_report
 from app.recognition import Gesture, Language
 from app.recognition.health.check import check_health
 from app.recognition.health.finding import Verdict

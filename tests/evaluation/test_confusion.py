@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from app.evaluation.confusion import NONE, REFUSED, Answer, ConfusionMatrix, confusion_svg
-from app.evaluation.proportion import Share
+from app.evaluation.share import Share
 
 LABELS = ("circle", "wedge", "<three & more>")
 pairs = st.lists(

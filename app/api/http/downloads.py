@@ -16,7 +16,8 @@ from app.api.http.problems import ProblemError
 def attachment(name: str, suffix: str) -> str:
     """Return the ``Content-Disposition`` of a file whose name a shell takes without quotes.
 
-    The page writes the same name into the robot's command (``fileName`` of the export).
+    The page writes the same name into the robot's command (``fileName`` of the page's
+    `export/export-dialog.js`); who calls this chooses `name`.
     """
     plain = "".join(
         each for each in unicodedata.normalize("NFKD", name) if unicodedata.category(each)[0] != "M"

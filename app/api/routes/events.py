@@ -16,6 +16,9 @@ from app.api.services.running_studio import CurrentStudio, Studio
 
 router = APIRouter(prefix="/events", tags=["events"])
 
+RETRY_MILLISECONDS = 1000
+"""Time after which a page connects again; `core/server-events.js` has the same."""
+
 
 @router.get(
     "", response_class=EventSourceResponse, responses={**problem_responses(), **EVENT_STREAM}
@@ -33,7 +36,7 @@ async def follow_changes(studio: CurrentStudio) -> EventSourceResponse:
 
 async def _change_events(studio: Studio) -> AsyncIterator[ServerSentEvent]:
     with studio.broadcast.subscribe() as events:
-        yield ServerSentEvent(comment="listening", retry=1000)
+        yield ServerSentEvent(comment="listening", retry=RETRY_MILLISECONDS)
         async for event in events:
             text = await event.share("text", partial(_write_text, studio, event))
             yield ServerSentEvent(data=text, event=event.kind)

@@ -26,7 +26,7 @@ from app.api.services.running_studio import Studio
 from app.api.services.stored_recognitions import WITHOUT
 from app.api.workers.tasks import TakeToRecognize, TestRun
 from app.api.workers.worker_messages import Failed, Finished, Progress, RecognizedTake
-from app.evaluation.proportion import Share
+from app.evaluation.share import Share
 from app.recognition.decision.result import Pair
 from app.recognition.health.finding import TestedGesture
 from app.recognition.recording.clip_range import find_clip_range

@@ -27,8 +27,7 @@ from app.recognition.recording.recording import Recording
 from app.recognition.recording.salute import FEW_HANDS, HOLD_SECONDS, find_held
 from app.recognition.recording.segmentation import Bracket, find_brackets, takes_in
 from app.recognition.recording.trimming import measure_extent
-from app.recognition.triggers.trigger import HOLD_SECONDS as POSE_SECONDS
-from app.recognition.triggers.trigger import SALUTE, Trigger
+from app.recognition.triggers.trigger import POSE_SECONDS, SALUTE, Trigger
 
 Remedy = Literal["set_range", "show_again", "arm_trigger"]
 """What mends a fault: another range of the clip, another take, or a trigger of the arms."""

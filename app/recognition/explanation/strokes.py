@@ -62,7 +62,7 @@ REVERSAL: Final = math.radians(50)
 """Least turn back by which a curve changes its sense."""
 
 STRAIGHT: Final = math.radians(55)
-"""Largest turn of a straight line."""
+"""Turn from which only a piece as direct as `NEARLY` is a line; arcs of 63 degrees are."""
 
 DIRECT: Final = 0.9
 """Least ratio of distance to path of a straight line."""

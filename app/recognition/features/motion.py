@@ -264,7 +264,7 @@ def uses_both_sides(landmarks: Sequence[str]) -> bool:
 
 
 def build_movement(trajectory: Trajectory, landmarks: Sequence[str]) -> Movement:
-    """Build a movement: smooth a trajectory and resample it along the landmarks' joint path.
+    """Build a movement: smooth a trajectory, cut its rests, and resample it by path and in time.
 
     Parameters
     ----------
@@ -297,6 +297,7 @@ def build_movement(trajectory: Trajectory, landmarks: Sequence[str]) -> Movement
     places = np.full((STEPS, at.arms, 2), np.nan)
     places[:, at.placed] = in_time.take(at.joints, axis=1)
     if at.torso is not None:
+        # Positions are relative to the torso of each moment, whose sway is a part of the movement.
         places += in_time[:, [at.torso]]
     return Movement(
         paths=paths,

@@ -87,13 +87,15 @@ def find_ambiguities(grammar: Grammar) -> tuple[Ambiguity, ...]:
     """Find the ambiguities of a grammar, with one example for each pair of phrases."""
     single = PhraseAutomaton(grammar, most_phrases=1)
     search = _PairSearch(single)
-    double = [_tell("same_sequence", single, *each) for each in search.two_parses()]
-    found = [*double, *(_tell("prefix", single, *each) for each in search.prefixes())]
+    double = [_describe_ambiguity("same_sequence", single, *each) for each in search.two_parses()]
+    found = [*double, *(_describe_ambiguity("prefix", single, *each) for each in search.prefixes())]
     if not found and _may_run_together(grammar):
         whole = PhraseAutomaton(grammar)
         search = _PairSearch(whole)
-        found += [_tell("run_together", whole, *each) for each in search.two_parses()][:1]
-        found += [_tell("prefix", whole, *each) for each in search.prefixes()][:1]
+        found += [
+            _describe_ambiguity("run_together", whole, *each) for each in search.two_parses()
+        ][:1]
+        found += [_describe_ambiguity("prefix", whole, *each) for each in search.prefixes()][:1]
     suspects = {name for each in double for name in each.phrases}
     for index, phrase in enumerate(grammar.phrases):
         if phrase.name in suspects and _is_unreachable(single, index):
@@ -222,7 +224,7 @@ def _is_unreachable(automaton: PhraseAutomaton, phrase: int) -> bool:
     return True
 
 
-def _tell(
+def _describe_ambiguity(
     kind: AmbiguityKind, automaton: PhraseAutomaton, gestures: tuple[str, ...], *ends: int
 ) -> Ambiguity:
     """Return the ambiguity of a message that two walks read, by the positions that they reach."""

@@ -377,7 +377,10 @@ def _value(grammar: Grammar, slot: Slot, values: list[Value], *, repeated: bool)
 
 
 def _fill(command: Any, values: Mapping[str, SlotValue | None]) -> Any:
-    """Fill the placeholders of a command, at any depth, with values."""
+    """Fill the placeholders of a command, at any depth, with values.
+
+    A text that is nothing but a placeholder becomes the value itself, with its type.
+    """
     if isinstance(command, dict):
         return {key: _fill(each, values) for key, each in command.items()}
     if isinstance(command, list):

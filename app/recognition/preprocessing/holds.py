@@ -428,7 +428,7 @@ def _judge(parts: Sequence[_Part]) -> tuple[int, float] | None:
     """
     agreeing, nearest = 0, np.inf
     for one, other in pairwise(parts):
-        apart = _measure_turned(one.shape, other.shape)
+        apart = _measure_unturned(one.shape, other.shape)
         if apart < TWO_STILL_SHAPES:
             return None
         if apart < TWO_SHAPES and max(one.spread, other.spread) > STILL * apart:
@@ -446,7 +446,7 @@ def _judge(parts: Sequence[_Part]) -> tuple[int, float] | None:
     return agreeing, nearest
 
 
-def _measure_turned(one: FloatArray, other: FloatArray) -> float:
+def _measure_unturned(one: FloatArray, other: FloatArray) -> float:
     """Return how far two shapes ``(21, 2)`` are apart, in sizes of the hand.
 
     A turn in the image by up to `MOST_SHAKEN` does not count: a signer shakes a letter.

@@ -20,9 +20,8 @@ from app.recognition.recording.salute import LONGEST_TAKE as LONGEST_TAKE
 from app.recognition.recording.salute import SHORTEST_TAKE as SHORTEST_TAKE
 from app.recognition.recording.salute import HeldTrigger
 from app.recognition.recording.trimming import Span, find_stroke
-from app.recognition.triggers.trigger import HOLD_SECONDS as POSE_SECONDS
 from app.recognition.triggers.trigger import LEAVE_SCORE as POSE_LEAVE_SCORE
-from app.recognition.triggers.trigger import SALUTE, Trigger
+from app.recognition.triggers.trigger import POSE_SECONDS, SALUTE, Trigger
 
 
 class TakeState(str, Enum):

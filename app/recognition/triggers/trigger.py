@@ -39,7 +39,7 @@ MOST_HANGING = 0.5
 arms are lowered and raised again: a language with a V read 31 of 59 such gaps, of rendered divers,
 as its V. Arms hung in 64 % and more of a gap, and in 36 % at most of a gesture."""
 
-HOLD_SECONDS = 0.6
+POSE_SECONDS = 0.6
 """Seconds that an arm pose must be held. Arms pass through a place as wide as the tolerance in less
 than half a second (Flash and Hogan 1985), and divers hold a sign on purpose for longer."""
 

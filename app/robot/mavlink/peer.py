@@ -5,7 +5,8 @@ submarine with ArduPilot. It stays the peer while it is heard. A heartbeat of an
 that, until one of a submarine comes again. All else is dropped and counted.
 
 A second submarine with the same ids is a rival, unless the table or the link names the address:
-nobody knows then which one is the vehicle.
+nobody knows then which one is the vehicle. A heartbeat of our own component from the vehicle's
+address is another robot that commands it, which is told.
 """
 
 from __future__ import annotations

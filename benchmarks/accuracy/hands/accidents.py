@@ -20,7 +20,7 @@ from typing import Literal
 import numpy as np
 import numpy.typing as npt
 
-from app.evaluation.proportion import Share
+from app.evaluation.share import Share
 from app.recognition import Gesture, Language, PoseError, Recognizer, find_takes
 from app.recognition.errors import GestureError
 from app.recognition.gestures.profile import AS_THE_PROFILE, Tuning

@@ -19,7 +19,7 @@ from pathlib import Path
 
 import numpy as np
 
-from app.evaluation.proportion import Share
+from app.evaluation.share import Share
 from app.recognition import Gesture, GestureError, Language, PoseError, Recognizer
 from benchmarks.sets.held_signs import HeldSigns, read_held_signs
 

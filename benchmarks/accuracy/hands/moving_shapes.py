@@ -22,7 +22,7 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
-from app.evaluation.proportion import Share
+from app.evaluation.share import Share
 from app.recognition import Gesture, Language, PoseSequence, Recognizer
 from app.recognition.gestures.switches import Switches
 from benchmarks.sets.held_signs import HeldSigns, read_held_signs

@@ -28,7 +28,7 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
-from app.evaluation.proportion import Share
+from app.evaluation.share import Share
 from app.recognition import Gesture, GestureError, Language, PoseError, Recognizer
 from app.recognition.poses.frame import HandShape
 from app.recognition.poses.sequence import FloatArray

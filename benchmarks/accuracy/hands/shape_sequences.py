@@ -21,7 +21,7 @@ from pathlib import Path
 
 import numpy as np
 
-from app.evaluation.proportion import Share
+from app.evaluation.share import Share
 from app.recognition import Gesture, GestureError, Language, PoseError, PoseSequence, Recognizer
 from app.recognition.poses.trajectory import Trajectory
 from app.recognition.preprocessing.holds import find_holds

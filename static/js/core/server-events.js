@@ -8,7 +8,7 @@ import { state, update } from "./state.js";
 
 /** @typedef {{ opened: () => void, returned: () => void, seen: () => void, clips: (id: string) => void, languages: (id: string) => void, jobs: (job: Job) => void }} Handlers */
 
-const RETRY = 1000; // ms, the same as the server's `retry` field
+const RETRY = 1000; // ms, `RETRY_MILLISECONDS` of api/routes/events.py
 const UNSEEN = 30_000; // ms after which a hidden page closes its connection
 
 /** @type {EventSource | null} */

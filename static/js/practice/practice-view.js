@@ -16,7 +16,7 @@ import { buttonOf, elementOf, html, nothing, render } from "../templates.js";
 import { addFiles, takeFilesIn } from "../upload/upload-list.js";
 import { practiceCamera } from "./practice-camera.js";
 import { feedback } from "./practice-feedback.js";
-import { recordCard } from "./practice-records.js";
+import { recordCard } from "./record-card.js";
 
 /** @import { PracticeRecord, PracticeTake } from "../core/types.d.ts" */
 
@@ -116,7 +116,7 @@ export function open(section) {
     },
   });
   const answer = h("div", { className: "practice-answer", role: "status" });
-  const records = h("div", { className: "practice-records" });
+  const records = h("div", { className: "record-card" });
   const note = h("p", { className: "dim" });
   let offered = "";
 

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.evaluation.proportion import Share
+from app.evaluation.share import Share
 from app.recognition.health.finding import Rate, to_plain
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from app.evaluation.proportion import Share
+from app.evaluation.share import Share
 from benchmarks.accuracy.hands.moving_shapes import (
     Answer,
     Composer,

@@ -1,4 +1,4 @@
-"""Proportion of correct answers, with its confidence interval."""
+"""Share of correct answers, with its confidence interval."""
 
 from __future__ import annotations
 
