@@ -142,8 +142,6 @@ def test_a_clip_becomes_a_gesture_a_recognition_and_a_file(
     expect(clock).to_have_text(re.compile(rf"frame {at + 9} of \d+$"))
     expect(page.locator(".toast")).to_have_count(0)
     assert picture(page, "studio").stat().st_size < 600_000
-    page.get_by_role("button", name="Play", exact=True).click()
-    expect(page.get_by_role("button", name="Pause", exact=True)).to_be_visible()
     # viser in a tab of its own has all of it, and follows; in the page's frame it has no panel.
     with page.context.expect_page() as opened:
         page.get_by_role("link", name="Open the scene in its own tab").click()
@@ -162,6 +160,8 @@ def test_a_clip_becomes_a_gesture_a_recognition_and_a_file(
     expect(alone.get_by_text("Not recognised yet")).to_be_visible()
     expect(distances).to_have_count(0)
     alone.close()
+    page.get_by_role("button", name="Play", exact=True).click()
+    expect(page.get_by_role("button", name="Pause", exact=True)).to_be_visible()
 
     # The language leaves as the file that a robot loads.
     page.get_by_role("button", name="Export").click()
