@@ -218,6 +218,8 @@ def main() -> None:
         except (ModuleNotFoundError, AttributeError, ValueError) as error:
             print(f"{name} is left out: {error}")
     folder = given.data / "trajectories"
+    if not folder.is_dir():
+        parser.error(f"{folder} is not there; which sets it holds: docs/bench.md")
     far = far_movements(folder)
     for recorded in chain(all_sets(folder, given.sets), drawn_sets()):
         if given.sets and recorded.name not in given.sets:

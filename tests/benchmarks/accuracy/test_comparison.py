@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import sys
 from collections import Counter
 from collections.abc import Sequence
 from pathlib import Path
@@ -11,7 +12,14 @@ import numpy as np
 import pytest
 
 from app.recognition import PoseError, PoseSequence
-from benchmarks.accuracy.comparison import Language, MethodError, draw_languages, judge, measure
+from benchmarks.accuracy.comparison import (
+    Language,
+    MethodError,
+    draw_languages,
+    judge,
+    main,
+    measure,
+)
 from benchmarks.methods import find_method
 from benchmarks.methods.base import Demonstration, Method, Prediction
 from benchmarks.sets.recorded_sets import RecordedSet
@@ -137,3 +145,14 @@ def test_the_documented_method_has_its_row(
 def test_a_method_that_is_not_there_is_not_found(name: str, error: type[Exception]) -> None:
     with pytest.raises(error):
         find_method(name)
+
+
+def test_a_folder_without_sets_is_named(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(sys, "argv", ["comparison", str(tmp_path), "--methods", "full"])
+    with pytest.raises(SystemExit):
+        main()
+    assert (
+        "trajectories is not there; which sets it holds: docs/bench.md" in capsys.readouterr().err
+    )
