@@ -25,8 +25,8 @@ from app.recognition.explanation.causes import ALIKE
 from app.recognition.explanation.strokes import transcribe_gesture
 from app.recognition.explanation.transcript import compare_transcripts
 from app.recognition.poses.sequence import FloatArray
-from benchmarks.accuracy.people import all_sets, define
-from benchmarks.sets.one_shot_draws import Draw, draws
+from benchmarks.accuracy.people import all_sets
+from benchmarks.sets.one_shot_draws import Draw, demonstrated, draws
 from benchmarks.sets.recorded_sets import RecordedSet
 
 SETS: Final = ("digits", "letters", "commands", "utd_signals", "utkinect", "utd_other")
@@ -81,7 +81,7 @@ def count_mixed(recognizer: Recognizer, recorded: RecordedSet, draw: Draw) -> Fl
 def list_pairs(recorded: RecordedSet) -> Iterator[Pair]:
     """Yield the pairs of the languages drawn from a set."""
     for draw in draws(recorded, DRAWS, QUERIES, SEED):
-        gestures = [define(recorded, [each]) for each in draw.templates]
+        gestures = demonstrated(recorded, draw.templates)
         recognizer = Recognizer(Language(recorded.name, gestures), "full")
         counts = count_mixed(recognizer, recorded, draw)
         tables = [recognizer.compare(each.trajectory) for each in gestures if each.trajectory]

@@ -31,7 +31,7 @@ import numpy as np
 
 from app.evaluation.share import Share
 from app.recognition import OsgError, PoseSequence
-from benchmarks.accuracy.people import all_sets, is_of_bodies
+from benchmarks.accuracy.people import all_sets, count_people, is_of_bodies
 from benchmarks.arguments import set_arguments
 from benchmarks.methods import METHODS, find_method
 from benchmarks.methods.base import Demonstration, Method, Prediction
@@ -59,12 +59,12 @@ class Language:
     demonstrations
         What it learns.
     takes
-        By relation: label and take; the label is empty where the movement is no gesture.
+        By relation; labels of movements that are no gestures are not in the language.
 
     """
 
     demonstrations: list[Demonstration]
-    takes: dict[str, list[tuple[str, PoseSequence]]]
+    takes: dict[str, list[Demonstration]]
 
 
 @dataclass
@@ -92,25 +92,21 @@ def draw_languages(
     recorded: RecordedSet, far: RecordedSet, count: int, queries: int, seed: int
 ) -> Iterator[Language]:
     """Draw languages of all classes by one person and by three, and of half of them by one."""
-
-    def of(takes: Sequence[int]) -> list[tuple[str, PoseSequence]]:
-        return [(str(recorded.labels[each]), recorded.recordings[each]) for each in takes]
-
     for number, chosen in enumerate(draws(recorded, count, queries, seed)):
         several = draw_several(recorded, chosen, max(PEOPLE), queries, seed + number)
-        asked = of(several.queries.tolist())
+        asked = recorded.show(several.queries.tolist())
         for people in (each for each in PEOPLE if each <= len(several.takes)):
             takes = {f"another, {people}": asked}
             if people == 1:
-                takes["same"] = of(chosen.own.tolist())
+                takes["same"] = recorded.show(chosen.own.tolist())
             shown = chain.from_iterable(several.rows(people))
             yield Language(recorded.show([*shown]), takes)
         shown = chain.from_iterable(several.rows(1))
         half = [each for each in recorded.show([*shown]) if each.label in several.half]
-        takes = {"near": [each for each in asked if each[0] not in several.half]}
+        takes = {"near": [each for each in asked if each.label not in several.half]}
         if is_of_bodies(recorded):
             order = np.random.default_rng(seed + number).permutation(len(far.recordings))
-            takes["far"] = [("", far.recordings[each]) for each in order[:queries]]
+            takes["far"] = far.show(order[:queries].tolist())
         yield Language(half, takes)
 
 
@@ -130,9 +126,9 @@ def measure(make: Callable[[], Method], languages: Sequence[Language]) -> Outcom
         method.fit(language.demonstrations)
         outcomes.fitting.append(process_time() - start)
         for relation, takes in language.takes.items():
-            for label, take in takes:
-                start = process_time()
-                said = _predict(method, take)
+            for take in takes:
+                label, start = take.label, process_time()
+                said = _predict(method, take.poses)
                 outcomes.predicting.append(process_time() - start)
                 named = {said.label, said.nearest, *(said.pair or ())} - {None}
                 if not named <= labels:
@@ -176,8 +172,7 @@ def format_outcomes(counts: Counter[str], names: Sequence[str]) -> str:
 
 def print_set(recorded: RecordedSet, found: dict[str, Outcomes]) -> None:
     """Print one row for each method, with its costs relative to the yardstick."""
-    people = len(np.unique(recorded.people))
-    print(f"\n## {recorded.name}, {people if people > 1 else 'unknown'} people\n")
+    print(f"\n## {recorded.name}, {count_people(recorded) or 'unknown'} people\n")
     print(
         "| method | nearest: same / another, 1 person / 3 people | 1 person: right / asked / "
         "refused / wrong | 3 people | near: answered / asked / refused | far | fit | predict |"

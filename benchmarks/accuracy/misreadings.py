@@ -41,7 +41,7 @@ from app.recognition.recording.extraction import explain_missing_salutes
 from app.recognition.recording.segmentation import takes_in
 from benchmarks.accuracy.misreading_pictures import draw_bodies, draw_clip, draw_paths
 from benchmarks.accuracy.people import all_sets, define
-from benchmarks.sets.one_shot_draws import draws
+from benchmarks.sets.one_shot_draws import demonstrated, draws
 from benchmarks.sets.recorded_sets import RecordedSet
 
 TABLE: Final = Path(__file__).with_suffix(".csv")
@@ -208,9 +208,7 @@ class Takes:
         recorded = self._set(name)
         return [
             (
-                Recognizer(
-                    Language(name, [define(recorded, [each]) for each in draw.templates]), "full"
-                ),
+                Recognizer(Language(name, demonstrated(recorded, draw.templates)), "full"),
                 draw.others.tolist(),
             )
             for seed in SEEDS

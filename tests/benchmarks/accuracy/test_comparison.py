@@ -94,7 +94,7 @@ def test_people_who_demonstrate_are_asked_only_as_the_same_person(
     for language in draw_languages(recorded, recorded, 3, 8, seed=2):
         shown = {each.person for each in language.demonstrations}
         for relation in language.takes.keys() - {"far"}:
-            asked = {owner[id(poses)] for _, poses in language.takes[relation]}
+            asked = {owner[id(take.poses)] for take in language.takes[relation]}
             assert asked <= shown if relation == "same" else asked.isdisjoint(shown)
 
 
