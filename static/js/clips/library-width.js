@@ -4,7 +4,7 @@ import { browserStore } from "../core/browser-store.js";
 import { byId } from "../core/dom.js";
 
 const KEY = "osg-studio.library-width";
-const [NARROWEST, WIDEST, STEP] = [220, 640, 20]; // CSS pixels
+const STEP = 20; // CSS pixels
 
 /** @type {Record<string, number>} */
 const KEYS = { ArrowLeft: -STEP, ArrowRight: STEP };
@@ -12,10 +12,13 @@ const KEYS = { ArrowLeft: -STEP, ArrowRight: STEP };
 /** Bind the divider between library and clip, and show the width that was kept. */
 export function bindLibraryWidth() {
   const divider = /** @type {HTMLElement} */ (byId("library-width"));
+  const [narrowest, widest] = ["aria-valuemin", "aria-valuemax"].map((name) =>
+    Number(divider.getAttribute(name)),
+  );
   const width = () => byId("library").getBoundingClientRect().width;
   /** @param {number | null} wanted - null: as it was designed */
   function show(wanted) {
-    const kept = wanted && Math.round(Math.min(WIDEST, Math.max(NARROWEST, wanted)));
+    const kept = wanted && Math.round(Math.min(widest, Math.max(narrowest, wanted)));
     byId("view-studio").style.setProperty("--library", kept ? `${kept}px` : "");
     divider.setAttribute("aria-valuenow", String(kept ?? Math.round(width())));
     return kept;
