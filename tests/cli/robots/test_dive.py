@@ -58,7 +58,7 @@ def test_a_signal_while_the_bridge_closes_ends_the_robot_in_order(
     table = tmp_path / "vehicle.toml"
     table.write_text(EMERGENCY_TABLE.replace("circle", "line"))
     language = sample_clips.parent / "osg-table-2.json"
-    page = ("--page", f"127.0.0.1:{free_port()}", "--upload") if has_page else ()
+    page = ("--page", "127.0.0.1:0", "--upload") if has_page else ()
     with (
         sailing(refused=frozenset({176})) as vehicle,  # MAV_CMD_DO_SET_MODE
         running(
