@@ -25,7 +25,7 @@ from app.recognition.explanation.causes import ALIKE
 from app.recognition.explanation.strokes import transcribe_gesture
 from app.recognition.explanation.transcript import compare_transcripts
 from app.recognition.poses.sequence import FloatArray
-from benchmarks.accuracy.people import all_sets
+from benchmarks.sets.every_set import all_sets
 from benchmarks.sets.one_shot_draws import Draw, demonstrated, draws
 from benchmarks.sets.recorded_sets import RecordedSet
 

@@ -15,8 +15,9 @@ import numpy as np
 
 from app.evaluation.share import Share
 from app.recognition import Language, Recognizer
-from benchmarks.accuracy.people import all_sets, count_people, define, recognize
+from benchmarks.accuracy.people import define, recognize
 from benchmarks.arguments import set_arguments
+from benchmarks.sets.every_set import all_sets, count_people
 from benchmarks.sets.one_shot_draws import draw_several, draws
 
 CONFIDENCES = (0.0, 0.25, 0.5, 0.75)

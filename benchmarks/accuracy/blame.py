@@ -44,9 +44,9 @@ from benchmarks.accuracy.known_faults import (
     leave_out,
     read,
 )
-from benchmarks.accuracy.people import all_sets
 from benchmarks.arguments import set_arguments
 from benchmarks.methods.ours import gesture_of
+from benchmarks.sets.every_set import all_sets
 from benchmarks.sets.one_shot_draws import Draw, draws
 from benchmarks.sets.recorded_sets import RecordedSet
 from benchmarks.sets.simulated_bodies import CARRIED

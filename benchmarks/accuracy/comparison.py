@@ -11,9 +11,6 @@ Times are processor time of all threads, so that other programs on the machine d
 `fit` for a language, and of `predict` for a take, relative to profile ``full`` on the same work.
 The interval is Wilson's.
 
-    python -m benchmarks.accuracy.comparison ../shared/data --draws 20 --queries 15 --seed 1
-    python -m benchmarks.accuracy.comparison ../shared/data --method package.module:Class
-
 How to write a method, and which sets these are: `docs/bench.md`. The trained methods need the extra
 ``bench``; without it they are left out, and the reason is printed.
 """
@@ -21,29 +18,40 @@ How to write a method, and which sets these are: `docs/bench.md`. The trained me
 from __future__ import annotations
 
 from collections import Counter, defaultdict
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
+from functools import partial
 from itertools import chain
+from pathlib import Path
 from statistics import fmean
 from time import process_time
 
 import numpy as np
 
-from app.evaluation.share import Share
 from app.recognition import OsgError, PoseSequence
-from benchmarks.accuracy.people import all_sets, count_people, is_of_bodies
-from benchmarks.arguments import set_arguments
+from app.recognition.gestures.profile import PROFILES
+from benchmarks.figures import Figure, Measurement, Results, share, table
 from benchmarks.methods import METHODS, find_method
 from benchmarks.methods.base import Demonstration, Method, Prediction
-from benchmarks.sets.drawn_sets import drawn_sets
+from benchmarks.sets.every_set import is_of_bodies, measure_sets
 from benchmarks.sets.one_shot_draws import draw_several, draws
-from benchmarks.sets.recorded_sets import RecordedSet
-from benchmarks.sets.whole_body_sets import far_movements
+from benchmarks.sets.recorded_sets import SETS, RecordedSet
+from benchmarks.sets.whole_body_sets import ARM_CLASSES, far_movements
 
 YARDSTICK = "full"
 PEOPLE = (1, 3)
 OF_THE_LANGUAGE = ("right", "asked", "refused", "wrong")
 OUT_OF_VOCABULARY = ("answered", "asked", "refused")
+
+NAMES = {
+    "paper": "profile `paper`",
+    "full": "profile `full`",
+    "published": "published steps",
+    "dtw": "plain DTW",
+    "jackknife": "Jackknife",
+    "point-cloud": "$P",
+}
+"""Methods as the table calls them."""
 
 
 class MethodError(Exception):
@@ -96,7 +104,7 @@ def draw_languages(
         several = draw_several(recorded, chosen, max(PEOPLE), queries, seed + number)
         asked = recorded.show(several.queries.tolist())
         for people in (each for each in PEOPLE if each <= len(several.takes)):
-            takes = {f"another, {people}": asked}
+            takes = {f"another-{people}": asked}
             if people == 1:
                 takes["same"] = recorded.show(chosen.own.tolist())
             shown = chain.from_iterable(several.rows(people))
@@ -123,7 +131,10 @@ def measure(make: Callable[[], Method], languages: Sequence[Language]) -> Outcom
     for language in languages:
         method, labels = make(), {each.label for each in language.demonstrations}
         start = process_time()
-        method.fit(language.demonstrations)
+        try:
+            method.fit(language.demonstrations)
+        except Exception as error:
+            raise MethodError(f"{type(error).__name__} of `fit`: {error}") from error
         outcomes.fitting.append(process_time() - start)
         for relation, takes in language.takes.items():
             for take in takes:
@@ -155,79 +166,110 @@ def judge(said: Prediction, label: str, known: bool) -> str:
     return "asked" if said.pair is not None else "refused"
 
 
-def format_nearest(outcomes: Outcomes) -> str:
-    """Return the shares right of the same person's takes, and of others' with one and three."""
-    relations = ("same", *(f"another, {people}" for people in PEOPLE))
-    counts = [outcomes.nearest[each] for each in relations]
-    return " / ".join(str(Share(each[True], each.total())) for each in counts)
+def find_methods(names: Iterable[str]) -> dict[str, Callable[[], Method]]:
+    """Find methods by name; those that are not installed are named and left out."""
+    found = {}
+    for name in names:
+        try:
+            found[name] = find_method(name)
+        except (ModuleNotFoundError, AttributeError, ValueError) as error:
+            print(f"{name} is left out: {error}", flush=True)
+    return found
 
 
-def format_outcomes(counts: Counter[str], names: Sequence[str]) -> str:
-    """Return the shares of outcomes in per cent, and the number of takes."""
-    if not counts:
-        return "-"
-    shares = " / ".join(f"{100 * counts[name] / counts.total():.1f}" for name in names)
-    return f"{shares}, n {counts.total()}"
-
-
-def print_set(recorded: RecordedSet, found: dict[str, Outcomes]) -> None:
-    """Print one row for each method, with its costs relative to the yardstick."""
-    print(f"\n## {recorded.name}, {count_people(recorded) or 'unknown'} people\n")
-    print(
-        "| method | nearest: same / another, 1 person / 3 people | 1 person: right / asked / "
-        "refused / wrong | 3 people | near: answered / asked / refused | far | fit | predict |"
-    )
-    print("| --- " * 8 + "|")
+def compare(
+    methods: tuple[str, ...], trajectories: Path, recorded: RecordedSet, quick: bool
+) -> Iterator[Figure]:
+    """Yield what every method says of the takes of a set, and what it costs."""
+    count, queries = (3, 15) if quick else (20, 30)
+    far = far_movements(trajectories)
+    languages = [*draw_languages(recorded, far, count, queries, seed=1)]
+    found: dict[str, Outcomes] = {}
+    for name, make in find_methods((YARDSTICK, *methods) if methods else METHODS).items():
+        try:
+            found[name] = measure(make, languages)
+        except MethodError as error:
+            print(f"{name} has no figures of {recorded.name}: {error}", flush=True)
     first = found[YARDSTICK]
     for name, outcomes in found.items():
-        cells = [name, format_nearest(outcomes)]
-        cells += [
-            format_outcomes(outcomes.counts[f"another, {people}"], OF_THE_LANGUAGE)
-            for people in PEOPLE
-        ]
-        cells += [
-            format_outcomes(outcomes.counts[each], OUT_OF_VOCABULARY) for each in ("near", "far")
-        ]
-        cells += [
-            f"{fmean(mine) / fmean(theirs):.2g}"
-            for mine, theirs in (
-                (outcomes.fitting, first.fitting),
-                (outcomes.predicting, first.predicting),
-            )
-        ]
-        print(f"| {' | '.join(cells)} |", flush=True)
+        method = name.replace(" ", "-")
+        for relation, nearest in outcomes.nearest.items():
+            yield share(f"{method}/{relation}", nearest[True], nearest.total())
+        # The others answer each take as a gesture.
+        for relation, counts in outcomes.counts.items() if name in (*PROFILES, *methods) else ():
+            known = relation in outcomes.nearest
+            for outcome in OF_THE_LANGUAGE if known else OUT_OF_VOCABULARY:
+                yield share(f"{method}/{relation}/{outcome}", counts[outcome], counts.total())
+        for cost, mine, theirs in (
+            ("fit", outcomes.fitting, first.fitting),
+            ("predict", outcomes.predicting, first.predicting),
+        ):
+            yield Figure(f"{method}/{cost}", fmean(mine) / fmean(theirs), len(mine), unit="ratio")
 
 
-def main() -> None:
-    """Print a table for each set, one row a method."""
-    parser = set_arguments(__doc__, draws=20, queries=15)
-    parser.add_argument("--methods", nargs="+", choices=METHODS, default=METHODS)
-    parser.add_argument(
-        "--method", action="append", default=[], help="one of your own, package.module:Class"
+def measurements(folder: Path, methods: tuple[str, ...]) -> Iterator[Measurement]:
+    """Yield the comparison on every set."""
+    trajectories = folder / "trajectories"
+    yield from measure_sets(
+        "comparison",
+        folder,
+        (*SETS, *ARM_CLASSES),
+        partial(compare, methods, trajectories),
+        "20 languages of all classes, 30 takes each by the same person, by others, of classes that "
+        "the language lacks, and of people who do not sign; one demonstration by one or by three",
+        trajectories / "kindergator.npz",
     )
-    given = parser.parse_args()
-    makers: dict[str, Callable[[], Method]] = {}
-    for name in dict.fromkeys((YARDSTICK, *given.methods, *given.method)):
-        try:
-            makers[name] = find_method(name)
-        except (ModuleNotFoundError, AttributeError, ValueError) as error:
-            print(f"{name} is left out: {error}")
-    folder = given.data / "trajectories"
-    if not folder.is_dir():
-        parser.error(f"{folder} is not there; which sets it holds: docs/bench.md")
-    far = far_movements(folder)
-    for recorded in chain(all_sets(folder, given.sets), drawn_sets()):
-        if given.sets and recorded.name not in given.sets:
-            continue
-        languages = [*draw_languages(recorded, far, given.draws, given.queries, given.seed)]
-        found: dict[str, Outcomes] = {}
-        for name, make in makers.items():
-            try:
-                found[name] = measure(make, languages)
-            except MethodError as error:
-                print(f"{name} has no row for {recorded.name}: {error}")
-        print_set(recorded, found)
 
 
-if __name__ == "__main__":
-    main()
+def write_nearest(results: Results) -> str:
+    """Write the share of takes whose nearest gesture is right: a row a set, a column a method."""
+    sets = results.names("comparison")
+    methods = dict.fromkeys(
+        figure.partition("/")[0]
+        for name in sets
+        for figure in results.measured[f"comparison/{name}"].figures
+    )
+    head = ["set", *(NAMES.get(each, each) for each in methods), "`full`, 3 people"]
+    rows = []
+    for name in sets:
+        cells = [name]
+        for method in methods:
+            style = "cell?" if method == YARDSTICK else "bare?"
+            cells.append(
+                " / ".join(
+                    results.show(f"comparison/{name}", f"{method}/{each}", style)
+                    for each in ("same", "another-1")
+                )
+            )
+        rows.append([*cells, results.show(f"comparison/{name}", "full/another-3", "cell?")])
+    return table(head, rows)
+
+
+def write_answers(results: Results) -> str:
+    """Write what profile `full` answers to takes of the language, and to those that it lacks."""
+    head = (
+        "set",
+        "1 person: right / asked / refused / wrong",
+        "3 people",
+        "near, answered / asked",
+        "far, answered / asked",
+    )
+    rows = []
+    for name in results.names("comparison"):
+        cells = [name]
+        for relation, outcomes in (
+            ("another-1", OF_THE_LANGUAGE),
+            ("another-3", OF_THE_LANGUAGE),
+            ("near", OUT_OF_VOCABULARY[:2]),
+            ("far", OUT_OF_VOCABULARY[:2]),
+        ):
+            each = [
+                results.show(f"comparison/{name}", f"full/{relation}/{outcome}", "bare?")
+                for outcome in outcomes
+            ]
+            cells.append("-" if "-" in each else " / ".join(each))
+        rows.append(cells)
+    return table(head, rows)
+
+
+TABLES = {"nearest": write_nearest, "answers": write_answers}

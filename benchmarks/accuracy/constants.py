@@ -39,9 +39,10 @@ from app.recognition.preprocessing.repair import repair_poses
 from app.recognition.voters import motion_voters
 from app.recognition.voters.motion_voters import Path, Place
 from app.recognition.voters.registry import MOTION_VOTERS
-from benchmarks.accuracy.people import all_sets, is_of_bodies, recognize
+from benchmarks.accuracy.people import recognize
 from benchmarks.arguments import set_arguments
 from benchmarks.decision_table import compare_all, print_table
+from benchmarks.sets.every_set import all_sets, is_of_bodies
 from benchmarks.sets.one_shot_draws import Draw, demonstrated, draws
 from benchmarks.sets.recorded_sets import DOMAINS, RecordedSet
 from benchmarks.sets.rendered_clips import CLIPS, rendered_clips

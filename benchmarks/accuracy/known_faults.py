@@ -30,8 +30,8 @@ from app.recognition.features.motion import find_hands, parse_body_part
 from app.recognition.gestures.demonstration import condense
 from app.recognition.poses.landmarks import WRISTS, other_side
 from app.recognition.poses.sequence import FloatArray
-from benchmarks.accuracy.people import all_sets
 from benchmarks.arguments import set_arguments
+from benchmarks.sets.every_set import all_sets
 from benchmarks.sets.one_shot_draws import demonstrated, draws
 from benchmarks.sets.recorded_sets import RecordedSet
 from benchmarks.sets.whole_body_sets import ARM_CLASSES, whole_body_sets

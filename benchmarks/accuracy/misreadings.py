@@ -40,7 +40,8 @@ from app.recognition.recording.clip_range import find_clip_range
 from app.recognition.recording.extraction import explain_missing_salutes
 from app.recognition.recording.segmentation import takes_in
 from benchmarks.accuracy.misreading_pictures import draw_bodies, draw_clip, draw_paths
-from benchmarks.accuracy.people import all_sets, define
+from benchmarks.accuracy.people import define
+from benchmarks.sets.every_set import all_sets
 from benchmarks.sets.one_shot_draws import demonstrated, draws
 from benchmarks.sets.recorded_sets import RecordedSet
 

@@ -68,11 +68,11 @@ from app.recognition.health.forecast import judge as find_outcome
 from benchmarks.arguments import set_arguments
 from benchmarks.methods.ours import teach
 from benchmarks.methods.plain_dtw import plain_dtw
-from benchmarks.sets.held_signs import HAND_LETTERS, hand_letters_set
+from benchmarks.sets.every_set import all_sets, count_people, is_of_bodies
+from benchmarks.sets.held_signs import HAND_LETTERS
 from benchmarks.sets.one_shot_draws import Draw, SeveralPeople, draw_several, draws
-from benchmarks.sets.recorded_sets import SETS, RecordedSet, recorded_sets
-from benchmarks.sets.simulated_bodies import CARRIED, carried_sets
-from benchmarks.sets.whole_body_sets import ARM_CLASSES, far_movements, whole_body_sets
+from benchmarks.sets.recorded_sets import RecordedSet
+from benchmarks.sets.whole_body_sets import far_movements
 
 SHOWN = {
     "1 person": (1, 1),
@@ -198,17 +198,6 @@ def score_half(
             yield "half: far accepted", result is not None and result.outcome != "rejected"
 
 
-def is_of_bodies(recorded: RecordedSet) -> bool:
-    """Return whether the torso is seen."""
-    return recorded.recordings[0].torso_length() is not None
-
-
-def count_people(recorded: RecordedSet) -> int | None:
-    """Return how many people there are takes of, None where they are not known."""
-    count = len(np.unique(recorded.people))
-    return count if count > 1 else None
-
-
 def measure(
     recorded: RecordedSet, chosen: Draw, several: SeveralPeople, far: RecordedSet, ratio: float
 ) -> Iterator[tuple[str, str, int]]:
@@ -257,16 +246,6 @@ def print_table(recorded: RecordedSet, found: Counts) -> None:
         + "".join(f"{number:>19}" for number in numbers),
         flush=True,
     )
-
-
-def all_sets(folder: Path, names: Sequence[str] | None) -> Iterator[RecordedSet]:
-    """Yield the recorded sets of hands and of whole bodies, and hands' paths carried by bodies."""
-    wanted = [*SETS, *ARM_CLASSES, *CARRIED] if names is None else names
-    yield from recorded_sets(folder, [name for name in wanted if name in SETS])
-    yield from whole_body_sets(folder, [name for name in wanted if name in ARM_CLASSES])
-    yield from carried_sets(folder, [name for name in wanted if name in CARRIED])
-    if HAND_LETTERS in wanted:
-        yield hand_letters_set(folder)
 
 
 Outcomes = dict[str, Counter[Outcome]]

@@ -27,7 +27,7 @@ from app.recognition.explanation.strokes import DIRECTIONS, Piece, transcribe
 from app.recognition.explanation.transcript import compare_transcripts, describe_strokes
 from app.recognition.poses.trajectory import Trajectory
 from benchmarks.accuracy.misreading_pictures import draw_paths
-from benchmarks.accuracy.people import all_sets
+from benchmarks.sets.every_set import all_sets
 
 TABLE: Final = Path(__file__).with_suffix(".csv")
 

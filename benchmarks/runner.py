@@ -1,0 +1,347 @@
+"""Measure everything that README and `docs/` quote, and write it there.
+
+    python -m benchmarks FOLDER
+    python -m benchmarks FOLDER --only comparison/digits forecasts
+    python -m benchmarks FOLDER --quick
+    python -m benchmarks FOLDER --only comparison --method package.module:Class
+    python -m benchmarks --pages
+
+FOLDER holds recordings of other people, which are not part of the project (`docs/bench.md`); what
+needs a set that is not there is left out by name. As many processes measure as there are cores;
+what measures time runs by itself at the end. A run that was broken off goes on where it was: each
+measurement is kept in a journal, which counts for its commit only. The run ends with
+`benchmarks/results.json` and the pages that quote it. A quick run, and one with a method of your
+own, writes `benchmarks/out/results.json` alone. With a method of your own only this one and profile
+`full` are measured; the other columns are those of `benchmarks/results.json`, of the same draws.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import re
+import subprocess
+import sys
+import traceback
+from collections.abc import Iterable, Iterator, Sequence
+from concurrent.futures import ProcessPoolExecutor, as_completed
+from dataclasses import dataclass
+from hashlib import sha256
+from multiprocessing import get_context
+from pathlib import Path
+from statistics import fmean
+from tempfile import TemporaryDirectory
+from time import monotonic
+
+from app import __version__
+from benchmarks.accuracy import comparison
+from benchmarks.figures import (
+    PAGES,
+    RESULTS,
+    ROOT,
+    FigureError,
+    Measured,
+    Measurement,
+    Results,
+    Table,
+    fill,
+    read_results,
+)
+
+TOPICS = (comparison,)
+"""Modules with `measurements`, and with `TABLES` that pages quote."""
+
+OUT = ROOT / "benchmarks" / "out"
+
+FOLDERS = ("app", "app/recognition", "benchmarks")
+"""Folders whose last change the file of results names; models are in `app/recognition`."""
+
+CODE = ("app", "benchmarks", f":!{RESULTS.relative_to(ROOT).as_posix()}")
+"""What has to be in a commit before it is measured."""
+
+
+class BenchError(Exception):
+    """Nothing can be measured, with the reason for a person."""
+
+
+@dataclass(frozen=True)
+class Order:
+    """What is to be measured, as a process of its own is told.
+
+    Attributes
+    ----------
+    folder
+        Of recordings; None: only what needs none.
+    quick
+        Whether with fewer draws.
+    methods
+        Of others, ``package.module:Class``.
+
+    """
+
+    folder: Path | None
+    quick: bool
+    methods: tuple[str, ...]
+
+    def measurements(self) -> dict[str, Measurement]:
+        """Return all measurements by name."""
+        found = {}
+        for topic in TOPICS:
+            for each in topic.measurements(self.folder or Path("FOLDER"), self.methods):
+                found[each.name] = each
+        return found
+
+
+def tables() -> dict[str, Table]:
+    """Return the tables of all topics by name."""
+    return {name: write for topic in TOPICS for name, write in topic.TABLES.items()}
+
+
+def measure(order: Order, name: str, commit: str, trees: dict[str, str]) -> Measured:
+    """Make one measurement."""
+    chosen = order.measurements()[name]
+    start = monotonic()
+    figures = {each.name: each for each in chosen.run(order.quick)}
+    return Measured(
+        data=chosen.data,
+        protocol=chosen.protocol,
+        people=chosen.people,
+        command=f"python -m benchmarks{' FOLDER' if chosen.reads else ''} --only {name}",
+        commit=commit,
+        trees={folder: trees[folder] for folder in chosen.measures},
+        seconds=round(monotonic() - start, 1),
+        data_hash=chosen.hash_data(),
+        figures=figures,
+    )
+
+
+class Journal:
+    """Measurements of one commit that are made already, kept one a line.
+
+    Parameters
+    ----------
+    path
+        The file; one of another commit is set aside beside it.
+    commit
+        Whose measurements count.
+
+    """
+
+    def __init__(self, path: Path, commit: str) -> None:
+        self._path, self.commit = path, commit
+        self.measured: dict[str, Measured] = {}
+        lines = path.read_text("utf-8").splitlines() if path.is_file() else []
+        for number, line in enumerate(lines, 1):
+            try:
+                content = json.loads(line)
+                name, measured = content["name"], Measured.from_dict(content["measured"])
+            except (ValueError, KeyError, TypeError, AttributeError):
+                print(f"Line {number} of {path} is damaged: it is measured again.")
+                continue
+            if measured.commit != commit:
+                aside = path.with_name(f"{path.stem}-{measured.commit[:8]}{path.suffix}")
+                path.replace(aside)
+                print(f"{path} is of commit {measured.commit[:8]}: it is kept as {aside.name}.")
+                self.measured = {}
+                return
+            self.measured[name] = measured
+
+    def keep(self, name: str, measured: Measured) -> None:
+        """Write down a measurement, and have it on the disk."""
+        self.measured[name] = measured
+        self._path.parent.mkdir(parents=True, exist_ok=True)
+        with self._path.open("a", encoding="utf-8") as file:
+            file.write(json.dumps({"name": name, "measured": measured.to_dict()}) + "\n")
+            file.flush()
+            os.fsync(file.fileno())
+
+
+def choose(known: Iterable[Measurement], only: Sequence[str]) -> Iterator[Measurement]:
+    """Yield the measurements that are asked for and can be made; name those that cannot.
+
+    Raises
+    ------
+    BenchError
+        If a name in `only` is none of a measurement or topic.
+
+    """
+    known = [*known]
+    for name in only:
+        if not any(_is_part(each.name, name) for each in known):
+            topics = ", ".join(dict.fromkeys(each.name.partition("/")[0] for each in known))
+            raise BenchError(f"nothing is called {name}. Topics: {topics}")
+    for each in known:
+        if only and not any(_is_part(each.name, name) for name in only):
+            continue
+        if missing := each.missing():
+            print(f"{each.name} is left out: {', '.join(map(str, missing))} is not there.")
+        else:
+            yield each
+
+
+def _is_part(name: str, of: str) -> bool:
+    return name == of or name.startswith(f"{of.rstrip('/')}/")
+
+
+def run(
+    order: Order,
+    chosen: Sequence[Measurement],
+    journal: Journal,
+    before: Results,
+    trees: dict[str, str],
+) -> bool:
+    """Make the measurements that the journal lacks; return whether all of them succeeded."""
+    waiting = [each for each in chosen if each.name not in journal.measured]
+    if len(waiting) < len(chosen):
+        print(f"{len(chosen) - len(waiting)} of {len(chosen)} are in the journal.")
+    usual = {name: each.seconds for name, each in before.measured.items()}
+    guess = fmean(usual.values()) if usual else 60.0
+    left = {each.name: usual.get(each.name, guess) for each in waiting}
+    waiting.sort(key=lambda each: -left[each.name])
+    succeeded = True
+    for alone in (False, True):
+        workers = 1 if alone else os.cpu_count() or 1
+        # A process each: what one leaves in memory or in threads changes no other.
+        with ProcessPoolExecutor(
+            workers, mp_context=get_context("spawn"), max_tasks_per_child=1
+        ) as pool:
+            futures = {
+                pool.submit(measure, order, each.name, journal.commit, trees): each.name
+                for each in waiting
+                if each.alone is alone
+            }
+            for future in as_completed(futures):
+                name = futures[future]
+                del left[name]
+                try:
+                    measured = future.result()
+                except Exception:
+                    succeeded = False
+                    print(f"{name} failed:\n{traceback.format_exc()}", flush=True)
+                    continue
+                journal.keep(name, measured)
+                done = f"{len(chosen) - len(left)} of {len(chosen)}"
+                minutes = sum(left.values()) / workers / 60
+                print(f"{done}: {name}, {measured.seconds:.0f} s; about {minutes:.0f} min left")
+    return succeeded
+
+
+def write_results(path: Path, results: Results) -> None:
+    """Write the file of results, with the last change of what it measures."""
+    measurements = {name: each.to_dict() for name, each in results.measured.items()}
+    steady = {
+        name: {key: value for key, value in each.items() if key not in ("seconds", "commit")}
+        for name, each in measurements.items()
+    }
+    content = {
+        "version": __version__,
+        "changed": {
+            folder: {"commit": _git("log", "-1", "--format=%H", "--", folder), "tree": tree}
+            for folder, tree in results.trees.items()
+        },
+        "hash": sha256(json.dumps(steady, sort_keys=True).encode()).hexdigest(),
+        "measurements": measurements,
+    }
+    path.parent.mkdir(parents=True, exist_ok=True)
+    text = json.dumps(content, indent=1, ensure_ascii=False)
+    # A figure is a line, so that a change of one is seen.
+    lines = re.sub(r"\{[^{}]*\}", lambda found: " ".join(found[0].split()), text)
+    path.write_text(f"{lines}\n", "utf-8")
+
+
+def write_pages(results: Results) -> None:
+    """Write the figures and tables into every page that quotes one."""
+    written = tables()
+    for page in PAGES:
+        text = page.read_text("utf-8")
+        filled = fill(text, results, written)
+        if filled != text:
+            page.write_text(filled, "utf-8")
+            print(f"{page.relative_to(ROOT)} is written.")
+
+
+def hash_folders() -> dict[str, str]:
+    """Return Git's hash of each folder that is measured, as it is in the working tree."""
+    with TemporaryDirectory() as folder:
+        index = {"GIT_INDEX_FILE": str(Path(folder) / "index")}
+        _git("read-tree", "HEAD", **index)
+        _git("add", "--all", *CODE, **index)
+        _git("rm", "--cached", "--quiet", "--ignore-unmatch", str(RESULTS), **index)
+        return {each: _git("write-tree", f"--prefix={each}/", **index) for each in FOLDERS}
+
+
+def _git(*words: str, **variables: str) -> str:
+    return subprocess.run(
+        ("git", "-C", str(ROOT), *words),
+        env={**os.environ, **variables},
+        check=True,
+        capture_output=True,
+        text=True,
+    ).stdout.strip()
+
+
+def print_figures(results: Results, names: Iterable[str]) -> None:
+    """Print the figures of measurements."""
+    for name in names:
+        print(f"\n{name}: {results.measured[name].protocol}")
+        for figure in results.measured[name].figures.values():
+            print(f"  {figure.name}  {results.show(name, figure.name)}, n {figure.n}")
+
+
+def main() -> None:
+    """Measure, and write results and pages."""
+    parser = argparse.ArgumentParser(
+        prog="python -m benchmarks",
+        description=__doc__,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument("folder", type=Path, nargs="?", help="recordings of other people")
+    parser.add_argument("--only", nargs="+", default=[], help="topics or measurements")
+    parser.add_argument("--quick", action="store_true", help="fewer draws, wide intervals")
+    parser.add_argument(
+        "--method", action="append", default=[], help="one of your own, package.module:Class"
+    )
+    parser.add_argument("--pages", action="store_true", help="measure nothing, write the pages")
+    given = parser.parse_args()
+    try:
+        sys.exit(bench(given))
+    except (BenchError, FigureError) as error:
+        parser.error(str(error))
+
+
+def bench(given: argparse.Namespace) -> int:
+    """Do what the command line says, and return the exit status."""
+    trees = hash_folders()
+    before = read_results(trees=trees)
+    if given.pages:
+        write_pages(before)
+        return 0
+    if given.folder is not None and not given.folder.is_dir():
+        raise BenchError(f"{given.folder} is not a folder")
+    order = Order(given.folder, given.quick, tuple(given.method))
+    known = order.measurements()
+    chosen = [*choose(known.values(), given.only)]
+    if not chosen:
+        raise BenchError(
+            "nothing can be measured without these; which sets there are: docs/bench.md"
+        )
+    kept = not given.quick and not given.method
+    if kept and _git("status", "--porcelain", "--", *CODE):
+        raise BenchError("app or benchmarks has changes that are in no commit: commit them first")
+    if not kept:
+        (OUT / "trial.jsonl").unlink(missing_ok=True)
+    journal = Journal(OUT / ("journal.jsonl" if kept else "trial.jsonl"), _git("rev-parse", "HEAD"))
+    os.environ.setdefault("OMP_NUM_THREADS", "1")
+    succeeded = run(order, chosen, journal, before, trees)
+    made = {name: each for name, each in journal.measured.items() if name in known}
+    print_figures(Results(made, trees), [each.name for each in chosen if each.name in made])
+    if given.method:
+        made = {name: each.beside(before.measured.get(name)) for name, each in made.items()}
+        print(f"\n{comparison.write_nearest(Results(made, trees))}")
+    everything = {**before.measured, **made}
+    results = Results({name: everything[name] for name in known if name in everything}, trees)
+    write_results(RESULTS if kept else OUT / "results.json", results)
+    if kept:
+        write_pages(results)
+    return 0 if succeeded else 1
