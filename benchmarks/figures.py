@@ -23,7 +23,7 @@ from typing import Any, Literal
 
 from app.evaluation.share import Share
 
-Unit = Literal["%", "ratio", ""]
+Unit = Literal["%", "points", "ratio", ""]
 
 ROOT = Path(__file__).parent.parent
 RESULTS = ROOT / "benchmarks" / "results.json"
@@ -56,7 +56,8 @@ class Figure:
     interval
         95 % interval of the value, or its range over runs; None: there is none.
     unit
-        ``%``: a share; ``ratio``; or empty, a plain number.
+        ``%``: a share; ``points``: a difference of shares in per cent; ``ratio``; or empty, a plain
+        number.
 
     """
 
@@ -264,24 +265,24 @@ class Results:
         return _format(found, style) + (OLD if self.is_old(measurement) else "")
 
 
+_FORMATS: dict[Unit, str] = {"%": "{:.1%}", "points": "{:+.1f}", "ratio": "{:.2f}", "": "{:.3g}"}
+
+
 def _format(found: Figure, style: str) -> str:
     if style == "n":
         return f"{found.n:,}"
     if style == "hits":
         return f"{found.value * found.n:.0f}"
-    factor, digits = (100, 1) if found.unit == "%" else (1, 2)
     if style == "whole":
-        return f"{factor * found.value:.0f}"
-    value = f"{factor * found.value:.{digits}f}"
-    if found.unit == "" and found.value >= 10:
-        value = f"{found.value:.0f}"
-    if style == "bare":
-        return value
-    sign = " %" if found.unit == "%" and style != "cell" else ""
-    ends = found.interval and [
-        f"{factor * each:.{0 if factor == 100 else digits}f}" for each in found.interval
-    ]
-    return f"{value}{sign}" + (f" ({ends[0]}-{ends[1]})" if ends else "")
+        return f"{found.value:.0%}"[:-1] if found.unit == "%" else f"{found.value:.0f}"
+    value = _FORMATS[found.unit].format(found.value)
+    sign = " %" if found.unit == "%" and style == "" else ""
+    text = value.rstrip("%") + sign
+    if style == "bare" or found.interval is None:
+        return text
+    ends = _FORMATS[found.unit].replace(".1%", ".0%")
+    low, high = (ends.format(end).rstrip("%") for end in found.interval)
+    return f"{text} ({low}{' to ' if found.unit == 'points' else '-'}{high})"
 
 
 Table = Callable[[Results], str]

@@ -35,7 +35,7 @@ from tempfile import TemporaryDirectory
 from time import monotonic
 
 from app import __version__
-from benchmarks.accuracy import comparison
+from benchmarks.accuracy import comparison, damage, landmark_sets, people, samples, spotting, views
 from benchmarks.figures import (
     PAGES,
     RESULTS,
@@ -49,7 +49,7 @@ from benchmarks.figures import (
     read_results,
 )
 
-TOPICS = (comparison,)
+TOPICS = (comparison, people, views, samples, spotting, damage, landmark_sets)
 """Modules with `measurements`, and with `TABLES` that pages quote."""
 
 OUT = ROOT / "benchmarks" / "out"

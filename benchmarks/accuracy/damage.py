@@ -1,38 +1,28 @@
 """Damaged keypoints: accuracy of profile ``full`` with and without the repair.
 
-Demonstrations are clean and queries damaged, the same ones with and without the repair. The
-recorded sets show hands or arms only; the takes of our own test clips show a whole body (their
-poses are extracted once and stored in the folder TAKES).
-
-    python -m benchmarks.accuracy.damage ../shared/data TAKES --draws 10 --queries 20 --seed 1
+Demonstrations are clean and takes damaged, the same ones with and without the repair. The recorded
+sets show hands or arms only; the takes of the sample clips show a whole body.
 """
 
 from __future__ import annotations
 
-import argparse
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass, replace
+from collections import Counter
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
 import numpy as np
 import numpy.typing as npt
 
-from app.evaluation.share import Share
-from app.recognition import (
-    Language,
-    PoseError,
-    PoseSequence,
-    Recognizer,
-    Recording,
-    record,
-    takes_in,
-)
+from app.recognition import Language, PoseSequence, Recognizer
 from app.recognition.gestures.profile import Tuning
 from app.recognition.preprocessing.repair import swap_sides
+from benchmarks.accuracy.samples import is_right, read_samples, teach_samples
+from benchmarks.figures import Figure, Measurement, Results, share, table
+from benchmarks.sets.every_set import measure_sets
 from benchmarks.sets.one_shot_draws import demonstrated, draws
-from benchmarks.sets.recorded_sets import recorded_sets
-from languages.build import FOLDER, TABLE_2
+from benchmarks.sets.recorded_sets import RecordedSet
 
 SETS = ("digits", "grufba3d", "natops")
 TORSOS_PER_EXTENT = 0.7
@@ -44,15 +34,8 @@ MEAN_RUN = 4
 Damage = Callable[[PoseSequence, np.random.Generator], PoseSequence]
 Mask = npt.NDArray[np.bool_]
 
-
-@dataclass(frozen=True)
-class Question:
-    """A query with its true label, for the recognisers of its language."""
-
-    repairing: Recognizer
-    unrepaired: Recognizer
-    poses: PoseSequence
-    label: str
+Question = tuple[Language, PoseSequence, str]
+"""A language, a take, and the gesture that it shows."""
 
 
 def missing(share: float, poses: PoseSequence, random: np.random.Generator) -> PoseSequence:
@@ -88,11 +71,14 @@ def untouched(poses: PoseSequence, random: np.random.Generator) -> PoseSequence:
 
 DAMAGES: dict[str, Damage] = {
     "none": untouched,
-    **{f"missing in {share:.0%}": partial(missing, share) for share in (0.1, 0.3, 0.6)},
-    **{f"jitter of {sigma:g}": partial(jitter, sigma) for sigma in (0.02, 0.05, 0.1)},
-    **{f"exchanged in {share:.0%}": partial(exchange, share) for share in (0.05, 0.2, 0.4)},
-    **{f"jumps in {share:.0%}": partial(jumping, share) for share in (0.02, 0.05, 0.1)},
+    **{f"missing-{share:.0%}".rstrip("%"): partial(missing, share) for share in (0.1, 0.3, 0.6)},
+    **{f"jitter-{sigma:g}": partial(jitter, sigma) for sigma in (0.02, 0.05, 0.1)},
+    **{
+        f"exchanged-{share:.0%}".rstrip("%"): partial(exchange, share) for share in (0.05, 0.2, 0.4)
+    },
+    **{f"jumps-{share:.0%}".rstrip("%"): partial(jumping, share) for share in (0.02, 0.05, 0.1)},
 }
+"""By name: kind, and per cent of the frames or torso lengths."""
 
 
 def unit(poses: PoseSequence) -> float:
@@ -111,85 +97,69 @@ def in_runs(share: float, count: int, random: np.random.Generator) -> Mask:
     return chosen
 
 
-def question(language: Language, poses: PoseSequence, label: str) -> Question:
-    """Recognise a query with the repair and without it."""
-    return Question(
-        Recognizer(language),
-        Recognizer(language, tuning=Tuning(keypoints_repaired=False)),
-        poses,
-        label,
-    )
-
-
-def recorded_questions(
-    folder: Path, count: int, queries: int, seed: int
-) -> Iterator[tuple[str, Question]]:
-    """Return queries by other people, or by anyone where people are unknown."""
-    for recorded in recorded_sets(folder):
-        if recorded.name not in SETS:
-            continue
-        for draw in draws(recorded, count, queries, seed):
-            language = Language(recorded.name, demonstrated(recorded, draw.templates))
-            first = question(language, recorded.recordings[0], "")
-            for query in draw.others if len(draw.others) else draw.own:
-                poses, label = recorded.recordings[query], str(recorded.labels[query])
-                yield recorded.name, replace(first, poses=poses, label=label)
-
-
-def clip_questions(kept: Path, times: int) -> Iterator[tuple[str, Question]]:
-    """Recognise the takes of our test clips, each several times; poses are stored in a folder."""
-    first = question(
-        Language.load(FOLDER / "osg-table-2.json"), _recording(kept, "line-test-1").poses, ""
-    )
-    for label in (entry.label for entry in TABLE_2):
-        for number in (1, 2):
-            take = takes_in(_recording(kept, f"{label}-test-{number}"))[0]
-            yield from [("takes", replace(first, poses=take.poses, label=label))] * times
-
-
-def _recording(kept: Path, name: str) -> Recording:
-    file = kept / f"{name}.npz"
-    if not file.exists():
-        record(FOLDER / "clips" / f"{name}.mp4").save(file)
-    return Recording.load(file)
-
-
-def is_named(recognizer: Recognizer, poses: PoseSequence, label: str) -> bool:
-    """Return whether the gesture is recognised; a take with a fault counts as not recognised."""
-    try:
-        return recognizer.recognize(poses).nearest == label
-    except PoseError:
-        return False
-
-
-def main() -> None:
-    """Print one line per damage and set: with the repair, and without it."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else None)
-    parser.add_argument("data", type=Path, help="the folder that holds trajectories/")
-    parser.add_argument("takes", type=Path, help="a folder for the poses of our test clips")
-    parser.add_argument("--draws", type=int, default=10, help="languages per set")
-    parser.add_argument("--queries", type=int, default=20, help="queries per language")
-    parser.add_argument("--seed", type=int, default=1)
-    given = parser.parse_args()
-    questions = [
-        *clip_questions(given.takes, given.draws),
-        *recorded_questions(given.data / "trajectories", given.draws, given.queries, given.seed),
-    ]
+def measure_damage(questions: Sequence[Question], quick: bool) -> Iterator[Figure]:
+    """Yield how many takes are nearest right by damage, with the repair and without it."""
+    languages = dict.fromkeys(language for language, _, _ in questions)
+    recognizers = {
+        name: {
+            language: Recognizer(language, tuning=Tuning(keypoints_repaired=name == "repaired"))
+            for language in languages
+        }
+        for name in ("repaired", "unrepaired")
+    }
     for name, damage in DAMAGES.items():
-        random = np.random.default_rng(given.seed)
-        repaired: dict[str, Share] = {}
-        unrepaired: dict[str, Share] = {}
-        for set_name, asked in questions:
-            bad = damage(asked.poses, random)
-            for recognizer, shares in (
-                (asked.repairing, repaired),
-                (asked.unrepaired, unrepaired),
-            ):
-                right = is_named(recognizer, bad, asked.label)
-                shares[set_name] = shares.get(set_name, Share(0, 0)) + Share(right, 1)
-        for set_name, share in repaired.items():
-            print(f"{name:17} {set_name:9} {share!s:18} {unrepaired[set_name]}", flush=True)
+        random = np.random.default_rng(1)
+        right = Counter[str]()
+        for language, poses, label in questions:
+            bad = damage(poses, random)
+            for repair, by_language in recognizers.items():
+                right[repair] += is_right(by_language[language], bad, label)
+        for repair in recognizers:
+            yield share(f"{name}/{repair}", right[repair], len(questions))
 
 
-if __name__ == "__main__":
-    main()
+def measure_set(recorded: RecordedSet, quick: bool) -> Iterator[Figure]:
+    """Ask about takes by other people, or by anybody where people are not known."""
+    questions = []
+    for draw in draws(recorded, 1 if quick else 4, 20, seed=1):
+        language = Language(recorded.name, demonstrated(recorded, draw.templates))
+        for query in draw.others if len(draw.others) else draw.own:
+            questions.append((language, recorded.recordings[query], str(recorded.labels[query])))
+    yield from measure_damage(questions, quick)
+
+
+def measure_takes(quick: bool) -> Iterator[Figure]:
+    """Ask about the takes of the sample clips, each damaged several times."""
+    demonstrations, tests = read_samples()
+    language = teach_samples(demonstrations)
+    takes = [(language, poses, label) for label, poses in tests]
+    yield from measure_damage(takes * (1 if quick else 4), quick)
+
+
+def measurements(folder: Path, methods: tuple[str, ...]) -> Iterator[Measurement]:
+    """Yield one for the sample clips, and for each set."""
+    protocol = "clean demonstrations; the same damaged takes with the repair and without it"
+    yield Measurement("damage/clips", measure_takes, "sample clips", protocol)
+    yield from measure_sets("damage", folder, SETS, measure_set, protocol)
+
+
+def write_damage(results: Results) -> str:
+    """Write a row for each damage, a column for each set: with repair / without."""
+    sets = results.names("damage")
+    rows = [
+        [
+            name.replace("-", " "),
+            *(
+                " / ".join(
+                    results.show(f"damage/{each}", f"{name}/{repair}", "bare")
+                    for repair in ("repaired", "unrepaired")
+                )
+                for each in sets
+            ),
+        ]
+        for name in ("none", "missing-60", "exchanged-20", "jumps-10")
+    ]
+    return table(("damage, % of frames", *sets), rows)
+
+
+TABLES = {"damage": write_damage}

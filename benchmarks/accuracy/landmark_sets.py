@@ -1,146 +1,103 @@
-"""Landmark sets: accuracy without the landmarks that other pose estimators lack.
+"""Accuracy of languages and takes with different keypoints.
 
-First the sample clips, with MediaPipe's 33 landmarks or only COCO's 17 (by name the same as
-OpenPose's 18, and all of BODY_25 that gestures follow): a language defined with either set
-recognises takes with either set. Then NATOPS (other people's arms, with wrists, elbows, thumbs and
-hand tips): one template per class, with all joints or with wrists and elbows alone. A rejected take
-counts as wrong in the column "label", and by its nearest gesture in "nearest"; each line ends with
-the most frequent confusion among the nearest gestures.
-
-    python -m benchmarks.accuracy.landmark_sets ../shared/data
+First the sample clips: takes of one estimator with all of its 33 body keypoints, or only COCO's 17
+(by name the same as OpenPose's 18, and all of BODY_25 that gestures follow): a language with either
+set recognises takes with either set. Then NATOPS (other people's arms, with wrists, elbows, thumbs
+and hand tips): one demonstration a class, with all joints or with wrists and elbows alone.
 """
 
 from __future__ import annotations
 
-import argparse
 from collections import Counter
 from collections.abc import Iterator, Sequence
-from contextlib import closing
 from dataclasses import replace
+from itertools import product
 from pathlib import Path
-from typing import NamedTuple
 
-from app.evaluation.share import Share
-from app.recognition import (
-    Gesture,
-    Language,
-    PoseError,
-    PoseSequence,
-    Recognizer,
-    record,
-    takes_in,
-)
-from app.recognition.estimation.factory import create_estimator
+from app.recognition import Gesture, Language, PoseError, Recognizer
 from app.recognition.gestures.profile import PROFILES
 from app.recognition.poses.landmarks import POSE_LANDMARKS
 from app.recognition.poses.skeletons import COCO_17
+from benchmarks.accuracy.samples import Shown, read_samples
+from benchmarks.figures import Figure, Measurement, Results, share, table
+from benchmarks.sets.every_set import measure_sets
 from benchmarks.sets.one_shot_draws import demonstrated, draws
-from benchmarks.sets.recorded_sets import RecordedSet, recorded_sets
+from benchmarks.sets.recorded_sets import RecordedSet
 
-SAMPLES = Path(__file__).parents[2] / "languages" / "clips"
-SETS = {"33": POSE_LANDMARKS, "COCO": COCO_17}
-
-Query = tuple[str, PoseSequence]
-"""The gesture that is shown, and its recording."""
+SETS = {"33": POSE_LANDMARKS, "coco": COCO_17}
 
 
-class Reading(NamedTuple):
-    """A query, its label, and the nearest gesture; None if nothing could be compared."""
-
-    shown: str
-    label: str | None
-    nearest: str | None
-
-
-def readings(recognizer: Recognizer, queries: Sequence[Query]) -> Iterator[Reading]:
-    """Recognise one query after the other."""
+def count_right(recognizer: Recognizer, queries: Sequence[Shown]) -> Counter[str]:
+    """Count takes whose label, and whose nearest gesture, is right."""
+    right = Counter[str]()
     for shown, poses in queries:
         try:
             result = recognizer.recognize(poses)
         except PoseError:
-            yield Reading(shown, None, None)
-        else:
-            yield Reading(shown, result.label, result.nearest)
+            continue
+        right["label"] += result.label == shown
+        right["nearest"] += result.nearest == shown
+    return right
 
 
-def sample_strokes() -> tuple[list[Query], list[Query]]:
-    """Return demonstrations and test takes of the sample clips."""
-    demonstrations: list[Query] = []
-    tests: list[Query] = []
-    with closing(create_estimator()) as estimator:
-        for clip in sorted(SAMPLES.glob("*-demonstration.mp4")):
-            label = clip.stem.removesuffix("-demonstration")
-            for path in (clip, *sorted(SAMPLES.glob(f"{label}-test-*.mp4"))):
-                (take,) = takes_in(record(path, estimator=estimator))
-                (demonstrations if path == clip else tests).append((label, take.poses))
-    return demonstrations, tests
-
-
-def report_samples() -> None:
-    """Print the sample clips' lines: every set of landmarks defined, every one recognised."""
-    demonstrations, tests = sample_strokes()
-    for defined, known in SETS.items():
+def measure_samples(quick: bool) -> Iterator[Figure]:
+    """Yield the shares for every set of keypoints that defines, and every one that is read."""
+    demonstrations, tests = read_samples()
+    for (defined, known), profile in product(SETS.items(), PROFILES):
         gestures = [
             Gesture.from_demonstration(label, poses.select(known))
             for label, poses in demonstrations
         ]
-        language = Language("samples", gestures)
-        for profile in PROFILES:
-            recognizer = Recognizer(language, profile)
-            for asked, seen in SETS.items():
-                queries = [(label, poses.select(seen)) for label, poses in tests]
-                line(f"samples, {defined} -> {asked}", profile, [*readings(recognizer, queries)])
+        recognizer = Recognizer(Language("samples", gestures), profile)
+        for asked, seen in SETS.items():
+            right = count_right(recognizer, [(label, poses.select(seen)) for label, poses in tests])
+            yield share(f"{profile}/{defined}-{asked}", right["label"], len(tests))
 
 
 def natops_subsets(recorded: RecordedSet) -> Iterator[tuple[str, RecordedSet]]:
     """Yield the set with all its joints, and with those that COCO has."""
-    yield "all joints", recorded
+    yield "all", recorded
     names = [name for name in recorded.recordings[0].landmarks if name in COCO_17]
     reduced = [poses.select(names) for poses in recorded.recordings]
-    yield "COCO's", replace(recorded, recordings=reduced)
+    yield "coco", replace(recorded, recordings=reduced)
 
 
-def report_natops(folder: Path, count: int, queries: int, seed: int) -> None:
-    """Print NATOPS's lines; draws are the same for both sets of joints."""
-    (natops,) = [each for each in recorded_sets(folder) if each.name == "natops"]
-    for name, recorded in natops_subsets(natops):
-        for profile in PROFILES:
-            found: list[Reading] = []
-            for draw in draws(recorded, count, queries, seed):
-                gestures = demonstrated(recorded, draw.templates)
-                asked = [
-                    (str(recorded.labels[query]), recorded.recordings[query]) for query in draw.own
-                ]
-                found += readings(Recognizer(Language("natops", gestures), profile), asked)
-            line(f"natops, {name}", profile, found)
+def measure_natops(natops: RecordedSet, quick: bool) -> Iterator[Figure]:
+    """Yield the shares with each set of joints; draws are the same for both."""
+    for (name, recorded), profile in product(natops_subsets(natops), PROFILES):
+        right, asked = Counter[str](), 0
+        for draw in draws(recorded, 3 if quick else 30, 30, seed=1):
+            language = Language("natops", demonstrated(recorded, draw.templates))
+            takes = [(str(recorded.labels[each]), recorded.recordings[each]) for each in draw.own]
+            right += count_right(Recognizer(language, profile), takes)
+            asked += len(takes)
+        for what in ("label", "nearest"):
+            yield share(f"{profile}/{name}/{what}", right[what], asked)
 
 
-def line(name: str, profile: str, found: Sequence[Reading]) -> None:
-    """Print one line of the report."""
-    right = Share(sum(each.label == each.shown for each in found), len(found))
-    nearest = Share(sum(each.nearest == each.shown for each in found), len(found))
-    pairs = Counter(
-        " and ".join(sorted((each.shown, each.nearest)))
-        for each in found
-        if each.nearest not in (each.shown, None)
+def measurements(folder: Path, methods: tuple[str, ...]) -> Iterator[Measurement]:
+    """Yield one for the sample clips, and one for NATOPS."""
+    protocol = "keypoints of one estimator cut down to COCO's 17"
+    yield Measurement("keypoints/samples", measure_samples, "sample clips", protocol)
+    yield from measure_sets("keypoints", folder, ("natops",), measure_natops, protocol)
+
+
+def write_keypoints(results: Results) -> str:
+    """Write a row for each set of keypoints."""
+    rows = [
+        [
+            f"natops, {name}",
+            *(
+                results.show("keypoints/natops", f"{each}/{name}/label", "cell")
+                for each in PROFILES
+            ),
+            results.show("keypoints/natops", f"full/{name}/nearest", "cell"),
+        ]
+        for name in ("all", "coco")
+    ]
+    return table(
+        ("data", *(f"`{each}`, right, %" for each in PROFILES), "`full`, nearest, %"), rows
     )
-    worst = "".join(f"  {pair}: {n} of {pairs.total()}" for pair, n in pairs.most_common(1))
-    print(f"{name:22} {profile:6} {right!s:>18} {nearest!s:>18} {len(found):5}{worst}", flush=True)
 
 
-def main() -> None:
-    """Print one line a set and profile."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else None)
-    parser.add_argument("data", type=Path, help="the folder that holds trajectories/")
-    parser.add_argument("--draws", type=int, default=30, help="choices of templates")
-    parser.add_argument("--queries", type=int, default=30, help="queries per choice")
-    parser.add_argument("--seed", type=int, default=1)
-    given = parser.parse_args()
-    print(f"one template a class, share correct (95 % interval), seed {given.seed}")
-    print(f"{'set':22} {'method':6} {'label':>18} {'nearest':>18} {'n':>5}")
-    report_samples()
-    report_natops(given.data / "trajectories", given.draws, given.queries, given.seed)
-
-
-if __name__ == "__main__":
-    main()
+TABLES = {"keypoints": write_keypoints}

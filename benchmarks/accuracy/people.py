@@ -1,145 +1,67 @@
-"""Accuracy on other people, with one person's demonstrations and with several people's.
+"""Demonstrations by several people: what they foretell, what they reach, which gestures to choose.
 
-Columns of a set's table: `same person` and `another` have one take of each class by one person, and
-queries by that person (by anybody where people are not known) and by everybody else. The other
-columns (one take or two by one person, one take each by two, three and five people) share their
-queries, which are by people who show nothing, or by anybody where people are not known. Rows:
+A language is shown by one person with one take or two of each class, and by two, three and five
+people with one each; takes of people who show nothing are asked about. `foretold` is what the
+health check says from the demonstrations alone, each person's read by those of the others;
+`reached` is what the takes are read as by the same language. Nothing in a forecast was fitted, so
+that every set is left out.
 
-- `nearest`: share of takes whose nearest gesture is right; plain DTW of positions, of velocities
-  and of both stands beside it;
-- `right rejected`: share of right nearest gestures that are rejected all the same;
-- `half: ...`: the same where a random half of the classes is the language, and of what it lacks
-  the share that is accepted: takes of the other classes (`near`), and, for whole bodies, movements
-  of people who do not sign (`far`);
-- asking back, whether or not a take is rejected: the answer has every gesture whose score is at
-  most `--ratio` times the best one. `wrong alone` is the share of wrong nearest gestures that are
-  the whole answer.
+*Live*: the takes are sent by an invitation as their own gesture (`right`), and as another one of
+the language (`wrong`). A take goes live unasked if it is read as what it was sent as, with at least
+a confidence.
 
-With ``--forecasts`` instead: what the health check foretells from the demonstrations of two, three
-and five people (each person's read by those of the others), beside what the takes of the people who
-show nothing are read as with the same language; of one person only the latter.
-
-With ``--choose`` instead: half of the classes, chosen by three people's demonstrations, by those of
-one of them, and at random. The same three show these languages to everybody else; gains are means
-over draws of the share right, in points, with their 95 % interval.
-
-Shares are of all draws together; the interval is Wilson's, which does not know that takes of one
-draw share demonstrations. ``--json`` also has every draw's counts, so that two versions of the
-recogniser can be compared draw by draw.
-
-    python -m benchmarks.accuracy.people ../shared/data --draws 8 --queries 60
-    python -m benchmarks.accuracy.people ../shared/data --draws 20 --queries 60 --forecasts
-    python -m benchmarks.accuracy.people ../shared/data --draws 50 --queries 40 --choose
+*Stops*: people show a language one after the other until the check asks for no more, at most eight
+and all but one. *Choosing*: half of the classes, chosen by three people's demonstrations, by those
+of one of them, and at random; the same three show these languages to everybody else.
 """
 
 from __future__ import annotations
 
-import json
-from argparse import Namespace
 from collections import Counter, defaultdict
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
-from dataclasses import replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
-from app.evaluation.share import Share
-from app.recognition import (
-    Gesture,
-    Language,
-    PoseError,
-    Recognition,
-    Recognizer,
-)
-from app.recognition.decision.outcome import ASK_RATIO
+from app.recognition import Gesture, Language, PoseError, Recognition, Recognizer
 from app.recognition.gestures.demonstration import MAX_DEMONSTRATIONS
 from app.recognition.health.choice import measure_confusions
 from app.recognition.health.forecast import (
     ENOUGH_PEOPLE,
     OUTCOMES,
     Outcome,
+    judge,
     make_forecast,
     measure_curve,
 )
-from app.recognition.health.forecast import judge as find_outcome
-from benchmarks.arguments import set_arguments
+from benchmarks.figures import Figure, Measurement, Results, mean, share, table
 from benchmarks.methods.ours import teach
-from benchmarks.methods.plain_dtw import plain_dtw
-from benchmarks.sets.every_set import all_sets, count_people, is_of_bodies
+from benchmarks.sets.every_set import measure_sets
 from benchmarks.sets.held_signs import HAND_LETTERS
-from benchmarks.sets.one_shot_draws import Draw, SeveralPeople, draw_several, draws
-from benchmarks.sets.recorded_sets import RecordedSet
-from benchmarks.sets.whole_body_sets import far_movements
+from benchmarks.sets.one_shot_draws import SeveralPeople, draw_several, draws
+from benchmarks.sets.recorded_sets import DOMAINS, RecordedSet
+from benchmarks.sets.simulated_bodies import CARRIED
+from benchmarks.sets.whole_body_sets import ARM_CLASSES
 
-SHOWN = {
-    "1 person": (1, 1),
-    "2 takes": (1, 2),
-    "2 people": (2, 1),
-    "3 people": (3, 1),
-    "5 people": (5, 1),
-}
+SHOWN = {"1": (1, 1), "1-twice": (1, 2), "2": (2, 1), "3": (3, 1), "5": (5, 1)}
 """Who shows every gesture of a language: number of people, and of takes by each."""
 
-COLUMNS = ("same person", "another", *SHOWN)
+WHEN = ("foretold", "reached")
+CHOSEN_BY = ("three-people", "one-person", "random")
 
-SIZE = "size of answer"
-"""The measure that is a mean, not a share."""
+CONFIDENCES = (0, 25, 50)
+"""Least confidences in per cent with which a take goes live; the studio's is 25."""
 
-MEASURES = (
-    "nearest",
-    "DTW positions",
-    "DTW velocities",
-    "DTW of both",
-    "right rejected",
-    "half: right rejected",
-    "half: near accepted",
-    "half: far accepted",
-    "wrong alone",
-    "right in answer",
-    SIZE,
-)
-"""Rows of the table."""
-
-Found = Iterator[tuple[str, int]]
-"""Measures of one query: name and value, 0 or 1, or the size of the answer."""
-
-Counts = dict[tuple[str, str], dict[int, list[int]]]
-"""Values of a set by column and measure, by number of the draw."""
+CHOOSING = ("digits", "letters", "commands", "utd_other", "utd_signals", HAND_LETTERS)
+"""Sets of which halves are chosen."""
 
 
 def define(recorded: RecordedSet, takes: Sequence[int]) -> Gesture:
     """Make a gesture of one take or several, with the people who show them."""
     return teach(recorded.show(takes))
-
-
-def judge(result: Recognition | None, label: str, ratio: float) -> Found:
-    """Yield what a take of a gesture of the language tells; None: it cannot be compared."""
-    right = result is not None and result.nearest == label
-    yield "nearest", right
-    if result is None:
-        return
-    if right:
-        yield "right rejected", result.outcome == "rejected"
-    bound = ratio * float(result.scores.min())
-    answer = [
-        name for name, score in zip(result.gestures, result.scores, strict=True) if score <= bound
-    ]
-    if not right:
-        yield "wrong alone", len(answer) == 1
-    yield "right in answer", label in answer
-    yield SIZE, len(answer)
-
-
-def judge_half(result: Recognition | None, label: str, language: Language) -> Found:
-    """Yield what a take tells whose gesture the language may lack."""
-    accepted = result is not None and result.outcome != "rejected"
-    if label not in language.labels:
-        yield "half: near accepted", accepted
-    elif result is not None and result.nearest == label:
-        yield "half: right rejected", not accepted
 
 
 def recognize(
@@ -153,229 +75,141 @@ def recognize(
         yield result, str(recorded.labels[query])
 
 
-def score(
-    recorded: RecordedSet,
-    rows: Sequence[Sequence[int]],
-    recognizer: Recognizer,
-    queries: npt.NDArray[np.intp],
-    ratio: float,
-) -> Found:
-    """Yield the measures of queries to a language that has all classes.
+def draw_people(
+    recorded: RecordedSet, count: int, most: int, queries: int
+) -> Iterator[SeveralPeople]:
+    """Draw languages shown by up to so many people, and queries by those who show nothing."""
+    for number, chosen in enumerate(draws(recorded, count, queries, seed=1)):
+        yield draw_several(recorded, chosen, most, queries, 1 + number)
 
-    Parameters
+
+def make_language(
+    recorded: RecordedSet, several: SeveralPeople, people: int, takes: int = 1
+) -> Language:
+    """Make the language of the first people."""
+    gestures = [define(recorded, row) for row in several.rows(people, takes)]
+    return Language(recorded.name, gestures)
+
+
+@dataclass
+class Tally:
+    """What was counted of a set's languages that the same people show, one entry a language.
+
+    Attributes
     ----------
-    recorded
-        The set.
-    rows
-        Per gesture its takes.
-    recognizer
-        Of these gestures.
-    queries
-        Indices of recordings.
-    ratio
-        Largest ratio to the best score in an answer, see `ASK_RATIO`.
+    foretold, reached
+        Outcomes of the check's readings, and of takes of people who show nothing.
+    live
+        Takes that would go live unasked, by what they were sent as and from which confidence.
 
     """
-    for result, label in recognize(recognizer, recorded, queries):
-        yield from judge(result, label, ratio)
-    taken = [take for row in rows for take in row]
-    compare = plain_dtw([recorded.recordings[take] for take in taken])
-    for query in queries:
-        for method, distances in compare(recorded.recordings[query]).items():
-            nearest = recorded.labels[taken[int(distances.argmin())]]
-            yield method, bool(nearest == recorded.labels[query])
 
+    foretold: list[Counter[Outcome]] = field(default_factory=list)
+    reached: list[Counter[Outcome]] = field(default_factory=list)
+    live: Counter[str] = field(default_factory=Counter)
 
-def score_half(
-    recorded: RecordedSet, recognizer: Recognizer, several: SeveralPeople, far: RecordedSet
-) -> Found:
-    """Yield the measures of queries, and of as many far movements, to a language of a half."""
-    for result, label in recognize(recognizer, recorded, several.queries):
-        yield from judge_half(result, label, recognizer.language)
-    if is_of_bodies(recorded):
-        order = np.random.default_rng(several.queries).permutation(len(far.recordings))
-        for result, _ in recognize(recognizer, far, order[: len(several.queries)]):
-            yield "half: far accepted", result is not None and result.outcome != "rejected"
+    def count(
+        self,
+        language: Language,
+        read: Sequence[tuple[Recognition | None, str]],
+        generator: np.random.Generator,
+    ) -> None:
+        """Count the readings of one language and of the takes that it was asked about."""
+        self.foretold.append(Counter(each.outcome for each in make_forecast(language).readings))
+        self.reached.append(Counter(judge(*each)[0] for each in read))
+        for result, label in read:
+            wrong = str(generator.choice([each for each in language.labels if each != label]))
+            for least in CONFIDENCES if result is not None else ():
+                if result is not None and result.confidence >= least / 100:
+                    self.live[f"right-from-{least}"] += result.label == label
+                    self.live[f"wrong-from-{least}"] += result.label == wrong
 
-
-def measure(
-    recorded: RecordedSet, chosen: Draw, several: SeveralPeople, far: RecordedSet, ratio: float
-) -> Iterator[tuple[str, str, int]]:
-    """Yield column, measure and value of every query of one draw."""
-    for column, (people, takes) in SHOWN.items():
-        if people > len(several.takes):
-            continue
-        rows = several.rows(people, takes)
-        gestures = [define(recorded, row) for row in rows]
-        whole = Recognizer(Language(recorded.name, gestures), "full")
-        asked = {column: several.queries}
-        if (people, takes) == (1, 1):
-            asked |= {"same person": chosen.own, "another": chosen.others}
-        for of_column, queries in asked.items():
-            for name, value in score(recorded, rows, whole, queries, ratio):
-                yield of_column, name, value
-        kept = [gesture for gesture in gestures if gesture.label in several.half]
-        half = Recognizer(Language(recorded.name, kept), "full")
-        for name, value in score_half(recorded, half, several, far):
-            yield column, name, value
-
-
-def summarize(name: str, by_draw: Sequence[Sequence[int]]) -> dict[str, Any]:
-    """Return a measure as plain JSON types, with sum and number of values of every draw."""
-    counts = [[sum(values), len(values)] for values in by_draw]
-    total, asked = np.sum(counts, axis=0).tolist()
-    whole = {"mean": total / asked} if name == SIZE else Share(total, asked).to_dict()
-    return {**whole, "asked": asked, "draws": counts}
-
-
-def print_table(recorded: RecordedSet, found: Counts) -> None:
-    """Print one line a measure, one column for each way to show the gestures."""
-    for name in MEASURES:
-        cells = []
-        for column in COLUMNS:
-            values = [value for of_draw in found[column, name].values() for value in of_draw]
-            share = str(Share(sum(values), len(values))) if name != SIZE else "-"
-            cells.append(f"{np.mean(values):.2f}" if name == SIZE and values else share)
-        print(f"{recorded.name:16} {name:21}" + "".join(f"{cell:>19}" for cell in cells))
-    numbers = [
-        sum(len(of_draw) for of_draw in found[column, "nearest"].values()) for column in COLUMNS
-    ]
-    people = count_people(recorded) or "unknown"
-    print(
-        f"{recorded.name:16} {f'takes, {people} people':21}"
-        + "".join(f"{number:>19}" for number in numbers),
-        flush=True,
-    )
-
-
-Outcomes = dict[str, Counter[Outcome]]
-"""Outcomes ``foretold`` and ``reached``."""
-
-
-def count_outcomes(recorded: RecordedSet, several: SeveralPeople, people: int) -> Outcomes:
-    """Count the outcomes of the demonstrations of some people, and of the queries to them."""
-    gestures = [define(recorded, row) for row in several.rows(people)]
-    language = Language(recorded.name, gestures)
-    asked = recognize(Recognizer(language, "full"), recorded, several.queries)
-    return {
-        "foretold": Counter(each.outcome for each in make_forecast(language).readings),
-        "reached": Counter(find_outcome(*each)[0] for each in asked),
-    }
-
-
-def measure_excess(outcomes: Outcomes) -> float | None:
-    """Return by how many points more is foretold right than reached; None without a forecast."""
-    foretold, reached = outcomes["foretold"], outcomes["reached"]
-    if not foretold or not reached:
-        return None
-    return 100 * (foretold["right"] / foretold.total() - reached["right"] / reached.total())
-
-
-def format_forecast(name: str, column: str, by_draw: Sequence[Outcomes]) -> str:
-    """Format a row of Markdown: foretold / reached by outcome, and how far both are apart."""
-    whole = sum_outcomes(by_draw)
-    shares = [[Share(of[outcome], of.total()) for of in whole.values()] for outcome in OUTCOMES]
-    right = " / ".join(map(str, shares[0]))
-    others = [
-        " / ".join("-" if each.value is None else f"{each.value:.1%}" for each in both)
-        for both in shares[1:]
-    ]
-    excess = measure_excess(whole)
-    each_draw = [abs(one) for draw in by_draw if (one := measure_excess(draw)) is not None]
-    apart = ["-", "-"] if excess is None else [f"{excess:+.1f}", f"{np.mean(each_draw):.1f}"]
-    numbers = " / ".join(str(of.total()) for of in whole.values())
-    return f"| {' | '.join([name, column, numbers, right, *others, *apart])} |"
-
-
-def sum_outcomes(by_draw: Sequence[Outcomes]) -> Outcomes:
-    """Add up the outcomes of all draws."""
-    return {
-        when: sum((each[when] for each in by_draw), Counter[Outcome]())
-        for when in ("foretold", "reached")
-    }
-
-
-def compare_forecasts(sets: Iterator[RecordedSet], given: Namespace) -> None:
-    """Print what several people's demonstrations foretell beside what further people reach."""
-    columns = {name: people for name, (people, takes) in SHOWN.items() if takes == 1}
-    print("| set | shown by | n | right | asked | refused | wrong | above | by language |")
-    print("| --- " * 9 + "|")
-    found: dict[str, list[float]] = defaultdict(list)
-    for recorded in sets:
-        if count_people(recorded) is None:
-            continue
-        by_column: dict[str, list[Outcomes]] = defaultdict(list)
-        for number, chosen in enumerate(draws(recorded, given.draws, given.queries, given.seed)):
-            several = draw_several(
-                recorded, chosen, max(columns.values()), given.queries, given.seed + number
-            )
-            for column, people in columns.items():
-                if people <= len(several.takes):
-                    by_column[column].append(count_outcomes(recorded, several, people))
-        for column, by_draw in by_column.items():
-            print(format_forecast(recorded.name, column, by_draw), flush=True)
-            if (excess := measure_excess(sum_outcomes(by_draw))) is not None:
-                found[column].append(excess)
-    for column, excesses in found.items():
-        print(
-            f"{column}: foretold minus reached {np.mean(excesses):+.1f} points on average, "
-            f"{np.mean(np.abs(excesses)):.1f} without sign, {min(excesses):+.1f} to "
-            f"{max(excesses):+.1f}"
+    def figures(self, column: str) -> Iterator[Figure]:
+        """Yield the shares of all languages together, and how far both are apart."""
+        foretold, reached = (
+            sum(each, Counter[Outcome]()) for each in (self.foretold, self.reached)
         )
-
-
-def compare_stops(sets: Iterator[RecordedSet], given: Namespace) -> None:
-    """Print after how many people the check asks for no more, and what further people then reach.
-
-    The people of a draw show the language one after the other, at most eight and all but one.
-    """
-    print("| set | languages | people at the stop | right: of one | at the stop | of all | all |")
-    print("| --- " * 7 + "|")
-    for recorded in sets:
-        stops, right = list[int](), defaultdict[str, Counter[Outcome]](Counter)
-        for number, chosen in enumerate(draws(recorded, given.draws, given.queries, given.seed)):
-            several = draw_several(
-                recorded, chosen, MAX_DEMONSTRATIONS, given.queries, given.seed + number
+        for when, counts in zip(WHEN, (foretold, reached), strict=True):
+            for outcome in OUTCOMES if counts else ():
+                yield share(f"{when}/{column}/{outcome}", counts[outcome], counts.total())
+        for name, happened in self.live.items():
+            yield share(f"live/{column}/{name}", happened, reached.total())
+        if foretold:
+            apart = np.array(
+                [100 * (a["right"] / a.total() - b["right"] / b.total()) for a, b in self.pairs()]
             )
-            everybody = len(several.takes)
-            if everybody < ENOUGH_PEOPLE:
-                break
-            counts = range(1, everybody)
-            enough = (each for each in counts if not asks_more(recorded, several, each))
-            stops.append(next(enough, everybody))
-            for name, people in (("one", 1), ("stop", stops[-1]), ("all", everybody)):
-                right[name].update(count_outcomes(recorded, several, people)["reached"])
-        if stops:
-            shares = [str(Share(of["right"], of.total())) for of in right.values()]
-            spread = f"{np.mean(stops):.1f} ({min(stops)}-{max(stops)})"
-            cells = [recorded.name, len(stops), spread, *shares, everybody]
-            print(f"| {' | '.join(map(str, cells))} |", flush=True)
+            above = foretold["right"] / foretold.total() - reached["right"] / reached.total()
+            yield Figure(f"above/{column}", 100 * above, len(apart), unit="points")
+            yield Figure(f"single/{column}", float(np.abs(apart).mean()), len(apart), unit="")
+
+    def pairs(self) -> Iterator[tuple[Counter[Outcome], Counter[Outcome]]]:
+        """Yield what was foretold and reached of each language."""
+        yield from zip(self.foretold, self.reached, strict=True)
+
+
+def measure_people(recorded: RecordedSet, quick: bool) -> Iterator[Figure]:
+    """Yield what is foretold, reached and live, by who shows the language."""
+    tallies: dict[str, Tally] = defaultdict(Tally)
+    generator = np.random.default_rng(1)
+    for several in draw_people(recorded, 2 if quick else 8, 5, 60):
+        for column, (people, takes) in SHOWN.items():
+            if people <= len(several.takes):
+                language = make_language(recorded, several, people, takes)
+                read = [*recognize(Recognizer(language, "full"), recorded, several.queries)]
+                tallies[column].count(language, read, generator)
+    for column, tally in tallies.items():
+        yield from tally.figures(column)
+
+
+def measure_stops(recorded: RecordedSet, quick: bool) -> Iterator[Figure]:
+    """Yield after how many people the check asks for no more, and what further people reach."""
+    stops, right = list[int](), defaultdict[str, Counter[Outcome]](Counter)
+    for several in draw_people(recorded, 2 if quick else 8, MAX_DEMONSTRATIONS, 60):
+        everybody = len(several.takes)
+        if everybody < ENOUGH_PEOPLE:
+            return
+        enough = (each for each in range(1, everybody) if not asks_more(recorded, several, each))
+        stops.append(next(enough, everybody))
+        for name, people in (("one", 1), ("stop", stops[-1]), ("all", everybody)):
+            recognizer = Recognizer(make_language(recorded, several, people), "full")
+            for each in recognize(recognizer, recorded, several.queries):
+                right[name][judge(*each)[0]] += 1
+    yield Figure("people", float(np.mean(stops)), len(stops), (min(stops), max(stops)), "")
+    for name, counts in right.items():
+        yield share(name, counts["right"], counts.total())
 
 
 def asks_more(recorded: RecordedSet, several: SeveralPeople, people: int) -> bool:
     """Return whether the check of a language shown by some people asks for one more."""
-    gestures = [define(recorded, row) for row in several.rows(people)]
-    language = Language(recorded.name, gestures)
+    language = make_language(recorded, several, people)
     forecast = make_forecast(language)
     return replace(forecast, curve=measure_curve(language, forecast)).asks_more
 
 
-CHOOSING = ("digits", "letters", "commands", "utd_other", "utd_signals", HAND_LETTERS)
-"""Sets of which halves are chosen."""
+def measure_choice(recorded: RecordedSet, quick: bool) -> Iterator[Figure]:
+    """Yield what further people reach with a chosen half of the classes, and with a random one."""
+    found: list[dict[str, float]] = []
+    for seed, chosen in enumerate(draws(recorded, 6 if quick else 50, 1, seed=1), 1):
+        several = draw_several(recorded, chosen, 3, len(recorded.recordings), seed)
+        if len(several.takes) == 3:
+            found.append(measure_halves(recorded, several, 40, seed))
+    by_name = {name: np.array([each[name] for each in found]) for name in found[0]}
+    for name, values in by_name.items():
+        yield mean(name, values.tolist(), "%")
+    three, one, random = by_name.values()
+    yield mean("gain", (100 * (three - random)).tolist(), "points")
+    yield mean("over-one", (100 * (three - one)).tolist(), "points")
 
 
 def measure_halves(
     recorded: RecordedSet, several: SeveralPeople, queries: int, seed: int
 ) -> dict[str, float]:
-    """Return the per cent read right of half of the classes, by who has chosen the half."""
-    one, three = (
-        Language(recorded.name, [define(recorded, row) for row in several.rows(people)])
-        for people in (1, 3)
-    )
+    """Return the share read right of half of the classes, by who has chosen the half."""
+    one, three = (make_language(recorded, several, people) for people in (1, 3))
     count = max(2, len(three.gestures) // 2)
     halves = {
-        "three people": measure_confusions(three).choose(count),
-        "one person": measure_confusions(one).choose(count),
+        "three-people": measure_confusions(three).choose(count),
+        "one-person": measure_confusions(one).choose(count),
         "random": np.random.default_rng(seed).permutation(len(three.gestures))[:count].tolist(),
     }
     order = np.random.default_rng(seed).permutation(several.queries)
@@ -384,84 +218,111 @@ def measure_halves(
         language = Language(recorded.name, [three.gestures[index] for index in sorted(half)])
         asked = order[np.isin(recorded.labels[order].astype(str), language.labels)][:queries]
         results = recognize(Recognizer(language, "full"), recorded, asked)
-        right[name] = 100 * float(np.mean([find_outcome(*each)[0] == "right" for each in results]))
+        right[name] = float(np.mean([judge(*each)[0] == "right" for each in results]))
     return right
 
 
-def format_gain(gains: Sequence[float]) -> str:
-    """Format the mean of draws' gains, and its 95 % interval by the normal distribution."""
-    mean = float(np.mean(gains))
-    half = 1.96 * float(np.std(gains, ddof=1)) / np.sqrt(len(gains)) if len(gains) > 1 else np.nan
-    return f"{mean:+.1f} ({mean - half:+.1f} to {mean + half:+.1f})"
+def measurements(folder: Path, methods: tuple[str, ...]) -> Iterator[Measurement]:
+    """Yield forecasts, stops and choices on the sets that name people."""
+    named = (*DOMAINS, *ARM_CLASSES, *CARRIED)
+    languages = "8 languages by 1, 2, 3 and 5 people, 60 takes each by people who show nothing"
+    yield from measure_sets("people", folder, named, measure_people, languages)
+    stopping = "8 languages shown by one person after the other until the check asks for no more"
+    yield from measure_sets("stops", folder, named[:7], measure_stops, stopping)
+    choosing = "half of the classes for three people, up to 50 draws, 40 takes each by others"
+    yield from measure_sets("choosing", folder, CHOOSING, measure_choice, choosing)
 
 
-def compare_choices(sets: Iterator[RecordedSet], given: Namespace) -> None:
-    """Print what further people reach with a chosen half of the classes, and with a random one."""
-    print("| set | draws | three people | one person | random | gain | over one person's choice |")
-    print("| --- " * 7 + "|")
-    for recorded in sets:
-        found: list[dict[str, float]] = []
-        for seed, chosen in enumerate(draws(recorded, given.draws, 1, given.seed), given.seed):
-            several = draw_several(recorded, chosen, 3, len(recorded.recordings), seed)
-            if len(several.takes) == 3:
-                found.append(measure_halves(recorded, several, given.queries, seed))
-        if found:
-            three, one, random = (np.array([each[name] for each in found]) for name in found[0])
-            means = [f"{values.mean():.1f}" for values in (three, one, random)]
-            gains = [format_gain(three - other) for other in (random, one)]
-            cells = [recorded.name, len(found), *means, *gains]
-            print(f"| {' | '.join(map(str, cells))} |", flush=True)
-
-
-def main() -> None:
-    """Print the table of every set, and write the JSON file after each."""
-    parser = set_arguments(__doc__, draws=8, queries=60)
-    parser.add_argument("--ratio", type=float, default=ASK_RATIO, help="of scores in one answer")
-    parser.add_argument("--json", type=Path, help="file for all counts, draw by draw")
-    parser.add_argument("--forecasts", action="store_true", help="forecasts alone")
-    parser.add_argument("--stops", action="store_true", help="number of people asked for, alone")
-    parser.add_argument(
-        "--choose", action="store_true", help="choice of half of the classes, alone"
+def write_forecasts(results: Results) -> str:
+    """Write what three people's demonstrations foretell / what further people reach."""
+    rows = []
+    for name in results.names("people"):
+        cells = [
+            " / ".join(
+                results.show(f"people/{name}", f"{when}/3/{outcome}", "bare") for when in WHEN
+            )
+            for outcome in OUTCOMES
+        ]
+        further = [
+            results.show(f"people/{name}", f"{what}/{people}", "bare?")
+            for what, people in (("above", "2"), ("above", "3"), ("above", "5"), ("single", "3"))
+        ]
+        rows.append([name, *cells, *further])
+    head = (
+        "set",
+        "right, %",
+        "asked back",
+        "refused",
+        "wrong",
+        "above: 2 people",
+        "3",
+        "5",
+        "single",
     )
-    given = parser.parse_args()
-    folder = given.data / "trajectories"
-    if given.choose:
-        compare_choices(all_sets(folder, given.sets or CHOOSING), given)
-        return
-    if given.stops:
-        compare_stops(all_sets(folder, given.sets), given)
-        return
-    if given.forecasts:
-        compare_forecasts(all_sets(folder, given.sets), given)
-        return
-    far = far_movements(folder)
-    most = max(people for people, _ in SHOWN.values())
-    report: dict[str, Any] = {
-        "arguments": {name: getattr(given, name) for name in ("draws", "queries", "seed", "ratio")},
-        "sets": {},
-    }
-    print(f"{'set':16} {'':21}" + "".join(f"{column:>19}" for column in COLUMNS), flush=True)
-    for recorded in all_sets(folder, given.sets):
-        found: Counts = defaultdict(lambda: defaultdict(list))
-        for number, chosen in enumerate(draws(recorded, given.draws, given.queries, given.seed)):
-            several = draw_several(recorded, chosen, most, given.queries, given.seed + number)
-            for column, name, value in measure(recorded, chosen, several, far, given.ratio):
-                found[column, name][number].append(int(value))
-        print_table(recorded, found)
-        measured: dict[str, dict[str, Any]] = defaultdict(dict)
-        for (column, name), by_draw in found.items():
-            if by_draw:
-                in_order = [by_draw.get(number, []) for number in range(given.draws)]
-                measured[column][name] = summarize(name, in_order)
-        report["sets"][recorded.name] = {
-            "people": count_people(recorded),
-            "recordings": len(recorded.recordings),
-            "classes": len(np.unique(recorded.labels)),
-            "measured": measured,
-        }
-        if given.json:
-            given.json.write_text(json.dumps(report, indent=1) + "\n", encoding="utf-8")
+    return table(head, rows)
 
 
-if __name__ == "__main__":
-    main()
+def write_reached(results: Results) -> str:
+    """Write the share read right by how many people show a language."""
+    rows = [
+        [
+            name,
+            *(results.show(f"people/{name}", f"reached/{each}/right", "cell?") for each in SHOWN),
+        ]
+        for name in results.names("people")
+    ]
+    return table(("set", "1 person", "1, two takes", "2 people", "3", "5"), rows)
+
+
+def write_live(results: Results) -> str:
+    """Write how many takes go live unasked, by their least confidence."""
+    rows = []
+    for name in results.names("people"):
+        cells = [
+            " / ".join(
+                results.show(f"people/{name}", f"live/{people}/{sent}-from-{least}", "bare")
+                for sent in ("right", "wrong")
+            )
+            for people in ("1", "3")
+            for least in CONFIDENCES
+        ]
+        rows.append([name, *cells])
+    head = ["set", *(f"{who}, from {each} %" for who in ("1", "3") for each in CONFIDENCES)]
+    return table(head, rows)
+
+
+def write_stops(results: Results) -> str:
+    """Write after how many people the check asks for no more, and what that reaches."""
+    rows = [
+        [
+            name,
+            results.show(f"stops/{name}", "people"),
+            *(results.show(f"stops/{name}", each, "cell") for each in ("one", "stop", "all")),
+        ]
+        for name in results.names("stops")
+    ]
+    return table(("set", "people at the stop", "right, %: one person", "at the stop", "all"), rows)
+
+
+def write_choices(results: Results) -> str:
+    """Write what a choice of gestures gains."""
+    rows = [
+        [
+            name,
+            results.show(f"choosing/{name}", "gain", "n"),
+            *(results.show(f"choosing/{name}", each, "bare") for each in CHOSEN_BY),
+            *(results.show(f"choosing/{name}", each) for each in ("gain", "over-one")),
+        ]
+        for name in results.names("choosing")
+    ]
+    head = ("set", "draws", "three people", "one person", "random", "gain", "over one person's")
+    return table(head, rows)
+
+
+TABLES = {
+    "forecasts": write_forecasts,
+    "reached": write_reached,
+    "live": write_live,
+    "stops": write_stops,
+    "choices": write_choices,
+}

@@ -4,37 +4,27 @@ Half of a set's classes make a language, one template each by one person; stream
 that person's or of other people's takes, of the classes left out, and of accidental movements
 (`benchmarks/sets/streams.py`). A gesture counts as found if a report has its label and the middle
 of the report lies within the gesture; every other report is a false alarm.
-
-    python -m benchmarks.accuracy.spotting ../shared/data --streams 3 --events 30 --seed 1
 """
 
 from __future__ import annotations
 
-import argparse
-from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from time import perf_counter
 
 import numpy as np
 
-from app.evaluation.share import Share
 from app.recognition import Language, Recognizer
-from app.recognition.estimation.factory import create_estimator
-from app.recognition.recording.video import read_frames
 from app.recognition.spotting import Spotted, Spotter
+from benchmarks.figures import Figure, Measurement, Results, share, table
+from benchmarks.sets.every_set import count_people, measure_sets
 from benchmarks.sets.one_shot_draws import demonstrated
-from benchmarks.sets.recorded_sets import RecordedSet, recorded_sets
+from benchmarks.sets.recorded_sets import RecordedSet
 from benchmarks.sets.streams import Event, Stream, compose, with_body
-from languages.build import FOLDER
 
 SETS = ("digits", "letters", "grufba3d")
 BARS = (0.5, 0.7, 0.8, 0.9, 0.95)
 """Thresholds on a report's confidence; the spotter runs with the first."""
-
-CLIP_FRAMES = 60
-"""Frames of a clip on which pose estimation is timed."""
 
 
 @dataclass(frozen=True)
@@ -43,7 +33,6 @@ class Detections:
 
     stream: Stream
     reports: list[tuple[float, Spotted]]
-    seconds_worked: float
 
 
 def streams(
@@ -67,88 +56,84 @@ def detect(recognizer: Recognizer, stream: Stream) -> Detections:
     """Listen to a stream frame by frame."""
     spotter = Spotter(recognizer, confident=BARS[0])
     reports: list[tuple[float, Spotted]] = []
-    begun = perf_counter()
     for moment in stream.poses.time.tolist():
         found = spotter.feed(stream.poses.between(moment, moment))
         reports += [(moment, each) for each in found]
-    worked = perf_counter() - begun
     end = float(stream.poses.time[-1])
-    return Detections(stream, reports + [(end, each) for each in spotter.finish()], worked)
+    return Detections(stream, reports + [(end, each) for each in spotter.finish()])
 
 
-def judge(one: Detections, bar: float) -> tuple[int, int, Counter[str]]:
-    """Count hits, reports, and the events on which false alarms fall."""
+def judge(one: Detections, bar: float) -> tuple[int, int]:
+    """Count hits and reports of at least a confidence."""
     unfound = [event for event in one.stream.events if event.label is not None]
-    found, alarms = 0, Counter[str]()
+    found = 0
     reports = [each for _, each in one.reports if each.recognition.confidence >= bar]
     for report in reports:
-        middle = (report.start + report.end) / 2
-        meant = _at(one.stream.events, middle)
+        meant = _at(one.stream.events, (report.start + report.end) / 2)
         if meant in unfound and meant is not None and meant.label == report.recognition.label:
             unfound.remove(meant)
             found += 1
-        else:
-            alarms[meant.kind if meant else "between"] += 1
-    return found, len(reports), alarms
+    return found, len(reports)
 
 
 def _at(events: tuple[Event, ...], moment: float) -> Event | None:
     return next((event for event in events if event.start <= moment <= event.end), None)
 
 
-def print_judgement(name: str, everything: list[Detections]) -> None:
-    """Print one line per threshold."""
-    hours = sum(one.stream.poses.duration for one in everything) / 3600
-    gestures = sum(e.label is not None for one in everything for e in one.stream.events)
-    for bar in BARS:
-        found, reported, alarms = 0, 0, Counter[str]()
-        for one in everything:
-            right, reports, wrong = judge(one, bar)
-            found, reported, alarms = found + right, reported + reports, alarms + wrong
-        print(
-            f"{name:16} {bar:4} precision {Share(found, reported)} recall {Share(found, gestures)} "
-            f"false/h {sum(alarms.values()) / hours:.0f} {dict(alarms)}, n {gestures}, "
-            f"{60 * hours:.0f} min",
-            flush=True,
-        )
-    delays = [moment - each.end for one in everything for moment, each in one.reports]
-    print(f"{name:16} seconds from end to report, 50 and 95 %: {np.percentile(delays, (50, 95))}")
+def measure_spotting(recorded: RecordedSet, quick: bool) -> Iterator[Figure]:
+    """Yield hits and false alarms in streams of the same person's takes, and of others'."""
+    recorded = with_body(recorded)
+    for who in ("same", "another") if count_people(recorded) else ("anybody",):
+        drawn = streams(recorded, who == "another", 1 if quick else 3, 30, seed=1)
+        everything = [detect(recognizer, stream) for recognizer, stream in drawn]
+        hours = sum(one.stream.poses.duration for one in everything) / 3600
+        gestures = sum(e.label is not None for one in everything for e in one.stream.events)
+        for bar in BARS:
+            judged = [judge(one, bar) for one in everything]
+            found, reported = (sum(each[index] for each in judged) for index in (0, 1))
+            name = f"{who}/{bar:.0%}".rstrip("%")
+            yield share(f"{name}/precision", found, reported)
+            yield share(f"{name}/recall", found, gestures)
+            yield Figure(f"{name}/alarms-an-hour", (reported - found) / hours, gestures, unit="")
+        late = [moment - each.end for one in everything for moment, each in one.reports]
+        for per_cent in (50, 95):
+            seconds = float(np.percentile(late, per_cent))
+            yield Figure(f"{who}/delay-{per_cent}", seconds, len(late), unit="")
+        yield Figure(f"{who}/minutes", 60 * hours, len(everything), unit="")
 
 
-def pose_seconds() -> float:
-    """Time pose and hand estimation of one frame of a sample clip."""
-    estimator = create_estimator()
-    lasted = []
-    with read_frames(FOLDER / "clips" / "circle-test-1.mp4") as reader:
-        for frame, _ in zip(reader, range(CLIP_FRAMES), strict=False):
-            begun = perf_counter()
-            estimator.estimate(frame.image, frame.time)
-            lasted.append(perf_counter() - begun)
-    estimator.close()
-    return float(np.median(lasted))
+def measurements(folder: Path, methods: tuple[str, ...]) -> Iterator[Measurement]:
+    """Yield one for each set."""
+    yield from measure_sets(
+        "spotting",
+        folder,
+        SETS,
+        measure_spotting,
+        "3 streams of 30 gestures, foreign gestures and background motion, without salutes",
+    )
 
 
-def main() -> None:
-    """Print precision, recall and false alarms per set, and the processing time per frame."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else None)
-    parser.add_argument("data", type=Path, help="the folder that holds trajectories/")
-    parser.add_argument("--streams", type=int, default=3, help="streams per set")
-    parser.add_argument("--events", type=int, default=30, help="events per stream")
-    parser.add_argument("--seed", type=int, default=1)
-    given = parser.parse_args()
-    worked, frames = 0.0, 0
-    for bodiless in recorded_sets(given.data / "trajectories"):
-        if bodiless.name not in SETS:
-            continue
-        recorded = with_body(bodiless)
-        for others in (False, True) if len(np.unique(recorded.people)) > 1 else (False,):
-            drawn = streams(recorded, others, given.streams, given.events, given.seed)
-            everything = [detect(recognizer, stream) for recognizer, stream in drawn]
-            print_judgement(f"{recorded.name} {'other' if others else 'same'}", everything)
-            worked += sum(one.seconds_worked for one in everything)
-            frames += sum(len(one.stream.poses) for one in everything)
-    print(f"work a frame over pose estimation of one: {worked / frames / pose_seconds():.2f}")
+def write_spotting(results: Results) -> str:
+    """Write precision, recall and false alarms at the spotter's least confidence."""
+    rows = []
+    for name in results.names("spotting"):
+        measured = f"spotting/{name}"
+        for who in ("same", "another", "anybody"):
+            start = f"{who}/{BARS[0]:.0%}".rstrip("%")
+            if f"{start}/recall" in results.measured[measured].figures:
+                rows.append(
+                    [
+                        f"{name}, {who}",
+                        results.show(measured, f"{start}/recall", "n"),
+                        results.show(measured, f"{who}/minutes", "whole"),
+                        results.show(measured, f"{start}/precision", "cell"),
+                        results.show(measured, f"{start}/recall", "cell"),
+                        results.show(measured, f"{start}/alarms-an-hour", "whole"),
+                        results.show(measured, f"{who}/delay-50", "bare"),
+                    ]
+                )
+    head = ("stream", "gestures", "minutes", "precision, %", "recall, %", "false alarms an hour")
+    return table((*head, "reported after, s"), rows)
 
 
-if __name__ == "__main__":
-    main()
+TABLES = {"spotting": write_spotting}

@@ -1,25 +1,23 @@
 """Accuracy on people who are turned from the camera, one frontal demonstration a gesture.
 
 Whole bodies recorded by depth cameras are turned about the vertical and projected. Three cases are
-compared: no depth; demonstrations and queries with a depth as inaccurate as a pose model's; and
-queries without depth against demonstrations with it. UD: queries by the person who demonstrated,
-UI: by others. The interval is Wilson's.
-
-    python -m benchmarks.accuracy.views ../shared/data --draws 20 --queries 30
+compared: no depth; demonstrations and takes with a depth as inaccurate as a pose model's; and takes
+without depth against demonstrations with it. Takes are by other people.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from concurrent.futures import ProcessPoolExecutor
+from collections import Counter
+from collections.abc import Iterator
 from dataclasses import replace
+from functools import partial
 from itertools import product
 from pathlib import Path
 
-from app.evaluation.share import Share
 from app.recognition import Language, PoseError, PoseSequence, Recognizer
-from benchmarks.arguments import set_arguments
+from benchmarks.figures import Figure, Measurement, Results, share, table
 from benchmarks.methods.ours import gesture_of
+from benchmarks.sets.every_set import PEOPLE, find_file
 from benchmarks.sets.one_shot_draws import draws
 from benchmarks.sets.recorded_sets import RecordedSet
 from benchmarks.sets.whole_body_sets import ARM_CLASSES, whole_body_sets
@@ -30,39 +28,33 @@ TURNS = (0, 30, 45, 60, -45)
 DEPTH_ERROR = 0.05
 """Error of depth in metres: about that of pose models on limbs seen from the front."""
 
-METHODS = ("no depth", "depth", "query without depth")
-
-Key = tuple[str, str, str, int]
-"""Key of a result: set, relation, method, turn."""
+CASES = {"none": "no depth", "known": "depth", "demonstrated": "of the demonstrations alone"}
+"""What knows its depth."""
 
 
-def without_depth(poses: PoseSequence) -> PoseSequence:
-    """Return poses without their depth."""
-    return replace(poses, world=None)
-
-
-def measure(folder: Path, name: str, draw: int, queries: int, seed: int) -> dict[Key, Share]:
-    """Return the shares of right nearest gestures of one draw."""
+def measure_turned(folder: Path, name: str, quick: bool) -> Iterator[Figure]:
+    """Yield the shares of right nearest gestures by depth and turn."""
     sets = {turn: _load(folder, name, turn) for turn in TURNS}
     front = sets[0]
-    *_, chosen = draws(front, draw + 1, queries, seed)
-    labels = [str(front.labels[index]) for index in chosen.templates]
-    shown = [front.recordings[index] for index in chosen.templates]
-    with_depth = Recognizer(Language(name, list(map(gesture_of, labels, shown))), "full")
-    flat = Recognizer(
-        Language(name, list(map(gesture_of, labels, map(without_depth, shown)))), "full"
-    )
-    right: dict[Key, Share] = {}
-    relations = {"UD": chosen.own, "UI": chosen.others}
-    for (relation, of_relation), method, turn in product(relations.items(), METHODS, TURNS):
-        recognizer = flat if method == "no depth" else with_depth
-        total = Share(0, 0)
-        for query in of_relation:
+    right, asked = Counter[tuple[str, int]](), Counter[tuple[str, int]]()
+    for chosen in draws(front, 2 if quick else 12, 25, seed=1):
+        labels = [str(front.labels[index]) for index in chosen.templates]
+        shown = [front.recordings[index] for index in chosen.templates]
+        flat = [replace(each, world=None) for each in shown]
+        with_depth, without = (
+            Recognizer(Language(name, list(map(gesture_of, labels, each))), "full")
+            for each in (shown, flat)
+        )
+        for case, turn, query in product(CASES, TURNS, chosen.others):
             poses = sets[turn].recordings[query]
-            poses = poses if method == "depth" else without_depth(poses)
-            total += Share(_nearest(recognizer, poses) == str(front.labels[query]), 1)
-        right[name, relation, method, turn] = total
-    return right
+            nearest = _find_nearest(
+                without if case == "none" else with_depth,
+                poses if case == "known" else replace(poses, world=None),
+            )
+            asked[case, turn] += 1
+            right[case, turn] += nearest == str(front.labels[query])
+    for (case, turn), n in asked.items():
+        yield share(f"{case}/{turn}", right[case, turn], n)
 
 
 def _load(folder: Path, name: str, turn: float) -> RecordedSet:
@@ -70,38 +62,39 @@ def _load(folder: Path, name: str, turn: float) -> RecordedSet:
     return recorded
 
 
-def _nearest(recognizer: Recognizer, poses: PoseSequence) -> str | None:
+def _find_nearest(recognizer: Recognizer, poses: PoseSequence) -> str | None:
     try:
         return recognizer.recognize(poses).nearest
     except PoseError:
         return None
 
 
-def print_table(right: dict[Key, Share], names: Sequence[str]) -> None:
-    """Print one line a set, relation and method."""
-    print(f"{'':36}" + "".join(f"{turn:>22}" for turn in TURNS))
-    for name, relation, method in product(names, ("UD", "UI"), METHODS):
-        cells = "".join(f"{right[name, relation, method, turn]!s:>22}" for turn in TURNS)
-        print(f"{name:10} {relation} {method:22}{cells}", flush=True)
+def measurements(folder: Path, methods: tuple[str, ...]) -> Iterator[Measurement]:
+    """Yield one for each set of whole bodies."""
+    trajectories = folder / "trajectories"
+    for name in ARM_CLASSES:
+        yield Measurement(
+            f"turned/{name}",
+            partial(measure_turned, trajectories, name),
+            data=f"{name}, turned about the vertical and projected",
+            protocol="12 languages by one frontal person, 25 takes each by others",
+            people=PEOPLE[name],
+            reads=find_file(trajectories, name),
+        )
 
 
-def main() -> None:
-    """Print the table of all sets."""
-    given = set_arguments(__doc__, draws=20, queries=30).parse_args()
-    names = [name for name in ARM_CLASSES if given.sets is None or name in given.sets]
-    total: dict[Key, Share] = {}
-    work = list(product([given.data / "trajectories"], names, range(given.draws)))
-    with ProcessPoolExecutor(2) as pool:
-        for found in pool.map(
-            measure,
-            *zip(*work, strict=True),
-            [given.queries] * len(work),
-            [given.seed] * len(work),
-        ):
-            for key, share in found.items():
-                total[key] = total.get(key, Share(0, 0)) + share
-    print_table(total, names)
+def write_turned(results: Results) -> str:
+    """Write a row for each set and depth, a column for each turn."""
+    rows = [
+        [
+            name,
+            CASES[case],
+            *(results.show(f"turned/{name}", f"{case}/{turn}", "cell") for turn in TURNS),
+        ]
+        for name in results.names("turned")
+        for case in ("none", "known")
+    ]
+    return table(("set", "depth", *(f"{turn} degrees" for turn in TURNS)), rows)
 
 
-if __name__ == "__main__":
-    main()
+TABLES = {"turned": write_turned}

@@ -1,26 +1,17 @@
-"""Measures of a draw: nearest and rejected takes, answers of several gestures, and sums."""
+"""Several people's demonstrations: what they foretell, reach, and choose."""
 
-from argparse import Namespace
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
-from app.recognition import Language, Recognition, Recognizer
+from app.recognition.health.forecast import OUTCOMES
 from benchmarks.accuracy.people import (
-    COLUMNS,
-    MEASURES,
-    SIZE,
-    compare_choices,
-    compare_forecasts,
-    count_outcomes,
+    CONFIDENCES,
     define,
-    format_gain,
-    judge,
-    judge_half,
-    measure,
+    measure_choice,
     measure_halves,
-    summarize,
+    measure_people,
 )
 from benchmarks.sets.one_shot_draws import draw_several, draws
 from benchmarks.sets.recorded_sets import RecordedSet
@@ -43,102 +34,34 @@ def recorded() -> RecordedSet:
     )
 
 
-@pytest.fixture(scope="module")
-def result(recorded: RecordedSet) -> Recognition:
-    language = Language("drawn", [define(recorded, [index]) for index in (0, 3, 6)])
-    return Recognizer(language, "full").recognize(recorded.recordings[1])
-
-
 def test_a_gesture_has_a_demonstration_and_a_diver_for_each_take(recorded: RecordedSet) -> None:
     shown = define(recorded, [0, 1, 12]).single_demonstrations()
     assert [each.diver for each in shown] == ["a", "a", "b"]
 
 
-@pytest.mark.parametrize(
-    ("scores", "label", "alone", "size"),
-    [
-        ([1.0, 1.15, 3.0], "circle", None, 1),
-        ([1.0, 1.05, 3.0], "circle", None, 2),
-        ([1.0, 1.15, 3.0], "line", True, 1),
-        ([1.0, 1.05, 1.08], "line", False, 3),
-        ([1.0, 1.05, 3.0], "square", False, 2),
-    ],
-)
-def test_an_answer_has_all_gestures_near_the_best(
-    result: Recognition, scores: list[float], label: str, alone: bool | None, size: int
-) -> None:
-    near = result.model_copy(
-        update={"nearest": "circle", "label": "circle", "scores": np.array(scores)}
-    )
-    found = dict(judge(near, label, ratio=1.1))
-    assert found["nearest"] == (label == "circle")
-    assert found.get("wrong alone") == alone
-    assert found[SIZE] == size
-    assert found["right in answer"] == (label in CLASSES[:size])
-    assert found.get("right rejected") == (False if label == "circle" else None)
-
-
-def test_what_cannot_be_compared_is_an_error_and_not_accepted(recorded: RecordedSet) -> None:
-    language = Language("drawn", [define(recorded, [0])])
-    assert dict(judge(None, "circle", ratio=1.1)) == {"nearest": False}
-    assert dict(judge_half(None, "line", language)) == {"half: near accepted": False}
-    assert dict(judge_half(None, "circle", language)) == {}
-
-
-def test_half_a_language_accepts_or_rejects(recorded: RecordedSet, result: Recognition) -> None:
-    language = Language("drawn", [define(recorded, [0])])
-    accepted = result.model_copy(update={"nearest": "circle", "label": "circle"})
-    rejected = result.model_copy(update={"nearest": "circle", "label": None})
-    assert dict(judge_half(accepted, "circle", language)) == {"half: right rejected": False}
-    assert dict(judge_half(rejected, "circle", language)) == {"half: right rejected": True}
-    assert dict(judge_half(accepted, "line", language)) == {"half: near accepted": True}
-    assert dict(judge_half(rejected, "line", language)) == {"half: near accepted": False}
-
-
-def test_every_column_is_measured_as_far_as_there_are_people(recorded: RecordedSet) -> None:
-    (chosen,) = draws(recorded, 1, 4, seed=1)
-    several = draw_several(recorded, chosen, 5, 4, seed=1)
-    found = list(measure(recorded, chosen, several, recorded, ratio=1.14))
-    assert {column for column, _, _ in found} == {*COLUMNS} - {"5 people"}
-    assert {name for _, name, _ in found} <= {*MEASURES}
-    for column in {*COLUMNS} - {"5 people"}:
-        asked = [name for of_column, name, _ in found if of_column == column]
-        assert asked.count("nearest") == asked.count("DTW of both") == 4
-        halves = 0 if column in ("same person", "another") else 4
-        assert asked.count("half: far accepted") == halves
-    right = [value for column, name, value in found if (column, name) == ("3 people", "nearest")]
-    assert np.mean(right) > 0.5
-
-
-def test_counts_of_all_draws_are_summed_up_and_kept() -> None:
-    share = summarize("nearest", [[1, 1, 0], [], [1]])
-    assert (share["share"], share["asked"], share["draws"]) == (0.75, 4, [[2, 3], [0, 0], [1, 1]])
-    assert summarize(SIZE, [[1, 2, 3], [2]])["mean"] == 2.0
-
-
 def test_forecasts_are_of_the_people_who_show_and_what_is_reached_of_the_others(
     recorded: RecordedSet,
 ) -> None:
-    (chosen,) = draws(recorded, 1, 4, seed=1)
-    several = draw_several(recorded, chosen, 3, 4, seed=1)
-    alone, three = (count_outcomes(recorded, several, people) for people in (1, 3))
-    assert not alone["foretold"]
-    assert three["foretold"].total() == 3 * len(CLASSES)
-    assert alone["reached"].total() == three["reached"].total() == 4
-    assert three["foretold"]["right"] > 6
+    figures = {each.name: each for each in measure_people(recorded, quick=True)}
+    assert "foretold/1/right" not in figures
+    assert figures["foretold/3/right"].n == 2 * 3 * len(CLASSES)
+    assert figures["foretold/3/right"].value > 0.5
+    foretold, reached = figures["foretold/3/right"], figures["reached/3/right"]
+    above = 100 * (foretold.value - reached.value)
+    assert figures["above/3"].value == pytest.approx(above)
+    assert abs(figures["above/3"].value) <= figures["single/3"].value + 1e-9
+    for people in ("1", "3"):
+        asked = [figures[f"reached/{people}/{each}"] for each in OUTCOMES]
+        assert sum(each.value for each in asked) == pytest.approx(1)
+        # Four people: of a language by three the fourth one's twelve takes are asked about.
+        assert {each.n for each in asked} == {2 * 12}
 
 
-def test_a_table_says_by_how_much_forecasts_are_above_what_is_reached(
-    recorded: RecordedSet, capsys: pytest.CaptureFixture[str]
-) -> None:
-    compare_forecasts(iter([recorded]), Namespace(draws=1, queries=4, seed=1))
-    rows = capsys.readouterr().out.splitlines()
-    (three,) = [row.split(" | ") for row in rows if row.startswith("| drawn | 3 people")]
-    assert three[2] == "12 / 4"
-    foretold, reached = (float(share.split("%")[0]) for share in three[3].split(" / "))
-    assert float(three[-2]) == pytest.approx(foretold - reached, abs=0.1)
-    (mean,) = [row for row in rows if row.startswith("3 people: foretold minus reached")]
-    assert f"{foretold - reached:+.1f} points on average" in mean
+def test_fewer_takes_go_live_with_more_confidence(recorded: RecordedSet) -> None:
+    figures = {each.name: each.value for each in measure_people(recorded, quick=True)}
+    live = [figures[f"live/1/right-from-{least}"] for least in CONFIDENCES]
+    assert live == sorted(live, reverse=True)
+    assert live[0] == figures["reached/1/right"]
 
 
 def test_half_of_the_classes_that_is_chosen_leaves_out_what_is_alike(
@@ -157,14 +80,11 @@ def test_half_of_the_classes_that_is_chosen_leaves_out_what_is_alike(
         several = draw_several(alike, chosen, 3, len(TAKES), seed=number)
         shares.append(measure_halves(alike, several, 12, seed=number))
     means = {name: np.mean([each[name] for each in shares]) for name in shares[0]}
-    assert means["three people"] > 90 > means["random"]
+    assert means["three-people"] > 0.9 > means["random"]
 
 
-def test_a_table_says_what_a_choice_gains_with_its_interval(
-    recorded: RecordedSet, capsys: pytest.CaptureFixture[str]
-) -> None:
-    assert format_gain([1.0, 3.0]) == "+2.0 (+0.0 to +4.0)"
-    compare_choices(iter([recorded]), Namespace(draws=2, queries=4, seed=1))
-    head, _, row = capsys.readouterr().out.splitlines()
-    assert len(row.split(" | ")) == len(head.split(" | "))
-    assert row.startswith("| drawn | 2 |")
+def test_a_choice_gains_the_mean_over_its_draws(recorded: RecordedSet) -> None:
+    figures = {each.name: each for each in measure_choice(recorded, quick=True)}
+    gain = figures["three-people"].value - figures["random"].value
+    assert figures["gain"].value == pytest.approx(100 * gain)
+    assert figures["gain"].n == 6
