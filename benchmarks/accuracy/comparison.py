@@ -229,47 +229,43 @@ def write_nearest(results: Results) -> str:
         for name in sets
         for figure in results.measured[f"comparison/{name}"].figures
     )
-    head = ["set", *(NAMES.get(each, each) for each in methods), "`full`, 3 people"]
-    rows = []
-    for name in sets:
-        cells = [name]
-        for method in methods:
-            style = "cell?" if method == YARDSTICK else "bare?"
-            cells.append(
-                " / ".join(
-                    results.show(f"comparison/{name}", f"{method}/{each}", style)
-                    for each in ("same", "another-1")
-                )
-            )
-        rows.append([*cells, results.show(f"comparison/{name}", "full/another-3", "cell?")])
-    return table(head, rows)
+    rows = [
+        [name, *(_show(results, name, [f"{each}/same", f"{each}/another-1"]) for each in methods)]
+        for name in sets
+    ]
+    return table(("set", *(NAMES.get(each, each) for each in methods)), rows)
 
 
 def write_answers(results: Results) -> str:
     """Write what profile `full` answers to takes of the language, and to those that it lacks."""
-    head = (
-        "set",
-        "1 person: right / asked / refused / wrong",
-        "3 people",
-        "near, answered / asked",
-        "far, answered / asked",
-    )
-    rows = []
-    for name in results.names("comparison"):
-        cells = [name]
-        for relation, outcomes in (
-            ("another-1", OF_THE_LANGUAGE),
-            ("another-3", OF_THE_LANGUAGE),
-            ("near", OUT_OF_VOCABULARY[:2]),
-            ("far", OUT_OF_VOCABULARY[:2]),
-        ):
-            each = [
-                results.show(f"comparison/{name}", f"full/{relation}/{outcome}", "bare?")
-                for outcome in outcomes
-            ]
-            cells.append("-" if "-" in each else " / ".join(each))
-        rows.append(cells)
-    return table(head, rows)
+    rows = [
+        [
+            name,
+            *(
+                results.show(f"comparison/{name}", f"full/{each}", "cell?")
+                for each in ("same", "another-1", "another-3")
+            ),
+            *(
+                _show(results, name, [f"full/{relation}/{each}" for each in outcomes])
+                for relation, outcomes in (
+                    ("another-1", OF_THE_LANGUAGE),
+                    ("another-3", OF_THE_LANGUAGE),
+                    ("near", OUT_OF_VOCABULARY[:2]),
+                    ("far", OUT_OF_VOCABULARY[:2]),
+                )
+            ),
+        ]
+        for name in results.names("comparison")
+    ]
+    head = ("set", "same person", "another", "3 people, another")
+    outcomes = ("1 person: right / asked / refused / wrong", "3 people", "near: answered / asked")
+    return table((*head, *outcomes, "far"), rows)
+
+
+def _show(results: Results, name: str, figures: Sequence[str]) -> str:
+    """Return figures of a set with slashes between them, ``-`` where they were not measured."""
+    shown = [results.show(f"comparison/{name}", each, "bare?") for each in figures]
+    return "-" if "-" in shown else " / ".join(shown)
 
 
 TABLES = {"nearest": write_nearest, "answers": write_answers}

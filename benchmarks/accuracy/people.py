@@ -233,51 +233,28 @@ def measurements(folder: Path, methods: tuple[str, ...]) -> Iterator[Measurement
     yield from measure_sets("choosing", folder, CHOOSING, measure_choice, choosing)
 
 
-def write_forecasts(results: Results) -> str:
-    """Write what three people's demonstrations foretell / what further people reach."""
-    rows = []
-    for name in results.names("people"):
-        cells = [
-            " / ".join(
-                results.show(f"people/{name}", f"{when}/3/{outcome}", "bare") for when in WHEN
-            )
-            for outcome in OUTCOMES
-        ]
-        further = [
-            results.show(f"people/{name}", f"{what}/{people}", "bare?")
-            for what, people in (("above", "2"), ("above", "3"), ("above", "5"), ("single", "3"))
-        ]
-        rows.append([name, *cells, *further])
-    head = (
-        "set",
-        "right, %",
-        "asked back",
-        "refused",
-        "wrong",
-        "above: 2 people",
-        "3",
-        "5",
-        "single",
-    )
-    return table(head, rows)
-
-
-def write_reached(results: Results) -> str:
-    """Write the share read right by how many people show a language."""
+def write_people(results: Results) -> str:
+    """Write what is reached by how many people show a language, and what three people foretell."""
     rows = [
         [
             name,
-            *(results.show(f"people/{name}", f"reached/{each}/right", "cell?") for each in SHOWN),
+            *(results.show(f"people/{name}", f"reached/{each}/right", "bare?") for each in SHOWN),
+            results.show(f"people/{name}", "foretold/3/right", "cell"),
+            *(
+                results.show(f"people/{name}", each, "bare?")
+                for each in ("above/2", "above/3", "above/5", "single/3")
+            ),
         ]
         for name in results.names("people")
     ]
-    return table(("set", "1 person", "1, two takes", "2 people", "3", "5"), rows)
+    head = ("set", "1 person", "1, twice", "2 people", "3", "5", "3 foretell")
+    return table((*head, "above: 2", "above: 3", "above: 5", "single: 3"), rows)
 
 
 def write_live(results: Results) -> str:
     """Write how many takes go live unasked, by their least confidence."""
     rows = []
-    for name in results.names("people"):
+    for name in (each for each in results.names("people") if each in ARM_CLASSES):
         cells = [
             " / ".join(
                 results.show(f"people/{name}", f"live/{people}/{sent}-from-{least}", "bare")
@@ -320,8 +297,7 @@ def write_choices(results: Results) -> str:
 
 
 TABLES = {
-    "forecasts": write_forecasts,
-    "reached": write_reached,
+    "people": write_people,
     "live": write_live,
     "stops": write_stops,
     "choices": write_choices,

@@ -20,7 +20,7 @@ from benchmarks.methods.ours import gesture_of
 from benchmarks.sets.every_set import PEOPLE, find_file
 from benchmarks.sets.one_shot_draws import draws
 from benchmarks.sets.recorded_sets import RecordedSet
-from benchmarks.sets.whole_body_sets import ARM_CLASSES, whole_body_sets
+from benchmarks.sets.whole_body_sets import ARM_CLASSES, FILES, whole_body_sets
 
 TURNS = (0, 30, 45, 60, -45)
 """Degrees, positive to the own left."""
@@ -72,7 +72,7 @@ def _find_nearest(recognizer: Recognizer, poses: PoseSequence) -> str | None:
 def measurements(folder: Path, methods: tuple[str, ...]) -> Iterator[Measurement]:
     """Yield one for each set of whole bodies."""
     trajectories = folder / "trajectories"
-    for name in ARM_CLASSES:
+    for name in (each for each in ARM_CLASSES if each not in FILES):
         yield Measurement(
             f"turned/{name}",
             partial(measure_turned, trajectories, name),
