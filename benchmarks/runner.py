@@ -48,8 +48,9 @@ from benchmarks.figures import (
     fill,
     read_results,
 )
+from benchmarks.simulation import triggers, variation
 
-TOPICS = (comparison, people, views, samples, spotting, damage, landmark_sets)
+TOPICS = (comparison, people, views, samples, spotting, damage, landmark_sets, triggers, variation)
 """Modules with `measurements`, and with `TABLES` that pages quote."""
 
 OUT = ROOT / "benchmarks" / "out"
