@@ -274,7 +274,7 @@ def hash_folders() -> dict[str, str]:
 
 def _git(*words: str, **variables: str) -> str:
     return subprocess.run(
-        ("git", "-C", str(ROOT), *words),
+        ("git", "-c", "safe.directory=*", "-C", str(ROOT), *words),
         env={**os.environ, **variables},
         check=True,
         capture_output=True,
