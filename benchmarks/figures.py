@@ -244,6 +244,10 @@ class Results:
         then = self.measured[measurement].trees
         return any(self.trees.get(folder, tree) != tree for folder, tree in then.items())
 
+    def old(self) -> list[str]:
+        """Return the measurements that are old."""
+        return [name for name in self.measured if self.is_old(name)]
+
     def show(self, measurement: str, figure: str, style: str = "") -> str:
         """Return a figure as text; a figure that does not exist as ``-``, where `style` allows.
 

@@ -15,7 +15,7 @@ def files(pattern: str) -> list[str]:
 
 setup(
     name=PACKAGE,
-    version="0.3.0",
+    version="0.4.0",
     packages=find_packages(include=[PACKAGE, f"{PACKAGE}.*"]),
     data_files=[
         ("share/ament_index/resource_index/packages", [f"resource/{PACKAGE}"]),
