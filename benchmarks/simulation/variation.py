@@ -85,9 +85,7 @@ def measure_variants(recorded: RecordedSet, quick: bool) -> Iterator[Figure]:
                 for voter in counted
                 if np.isfinite(real[:, voter]).all() and np.ptp(real[:, voter]) > 0
             ]
-            yield Figure(
-                f"{person}/{factor:g}", float(np.mean(differences)), len(pairs), unit="ratio"
-            )
+            yield Figure(f"{person}/{factor:g}", float(np.mean(differences)), len(pairs), unit="")
 
 
 def find_difference(one: FloatArray, other: FloatArray) -> float:
