@@ -36,6 +36,7 @@ from time import monotonic
 
 from app import __version__
 from benchmarks.accuracy import comparison, damage, landmark_sets, people, samples, spotting, views
+from benchmarks.cost import clips, crashes, robot, server, speed, uneven
 from benchmarks.figures import (
     PAGES,
     RESULTS,
@@ -50,7 +51,23 @@ from benchmarks.figures import (
 )
 from benchmarks.simulation import triggers, variation
 
-TOPICS = (comparison, people, views, samples, spotting, damage, landmark_sets, triggers, variation)
+TOPICS = (
+    comparison,
+    people,
+    views,
+    samples,
+    spotting,
+    damage,
+    landmark_sets,
+    triggers,
+    variation,
+    speed,
+    clips,
+    robot,
+    uneven,
+    server,
+    crashes,
+)
 """Modules with `measurements`, and with `TABLES` that pages quote."""
 
 OUT = ROOT / "benchmarks" / "out"
