@@ -185,19 +185,23 @@ def find_methods(names: Iterable[str]) -> dict[str, Callable[[], Method]]:
     return found
 
 
-def compare(
+def compare_on_set(
     methods: tuple[str, ...], trajectories: Path, recorded: RecordedSet, quick: bool
 ) -> Iterator[Figure]:
-    """Yield what every method says of the takes of a set, and what it costs."""
+    """Draw languages of a set, and yield what every method says of its takes."""
     count, queries = (3, 15) if quick else (20, 30)
     far = far_movements(trajectories)
-    languages = [*draw_languages(recorded, far, count, queries, seed=1)]
+    return compare(methods, recorded.name, [*draw_languages(recorded, far, count, queries, 1)])
+
+
+def compare(methods: tuple[str, ...], data: str, languages: Sequence[Language]) -> Iterator[Figure]:
+    """Yield what every method says of takes, and what it costs."""
     found: dict[str, Outcomes] = {}
     for name, make in find_methods((YARDSTICK, *methods) if methods else METHODS).items():
         try:
             found[name] = measure(make, languages)
         except MethodError as error:
-            print(f"{name} has no figures of {recorded.name}: {error}", flush=True)
+            print(f"{name} has no figures of {data}: {error}", flush=True)
     first = found[YARDSTICK]
     for name, outcomes in found.items():
         method = name.replace(" ", "-")
@@ -233,7 +237,7 @@ def measurements(folder: Path, methods: tuple[str, ...]) -> Iterator[Measurement
         "comparison",
         folder,
         (*SETS, *ARM_CLASSES),
-        partial(compare, methods, trajectories),
+        partial(compare_on_set, methods, trajectories),
         "20 languages of all classes, 30 takes each by the same person, by others, of classes that "
         "the language lacks, and of people who do not sign; one demonstration by one or by three",
         trajectories / "kindergator.npz",
