@@ -272,9 +272,11 @@ def _why_failed(error: BaseException | None) -> str:
 def write_results(path: Path, results: Results) -> None:
     """Write the file of results, with the last change of what it measures."""
     measurements = {name: each.to_dict() for name, each in results.measured.items()}
+    # Ratios are mostly of times; what reads no data measures this machine.
     steady = {
-        name: {key: value for key, value in each.items() if key not in ("seconds", "commit")}
-        for name, each in measurements.items()
+        name: {key: each for key, each in figures.items() if each["unit"] != "ratio"}
+        for name, measured in measurements.items()
+        if measured["data_hash"] and (figures := measured["figures"])
     }
     content = {
         "version": __version__,

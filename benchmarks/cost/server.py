@@ -463,7 +463,7 @@ def measurements(folder: Path, methods: tuple[str, ...]) -> Iterator[Measurement
         ("clips", compare_databases, "accesses to SQLite with 100,000 clips, to 1000"),
         ("watchers", measure_watchers, "an event for each of 1000 or 10,000 watchers, to of 100"),
         ("load", measure_load, "requests beside 50 pages and 8 uploading clients, to none"),
-        ("growth", measure_growth, "what is kept after 100 cycles of 24 requests"),
+        ("growth", measure_growth, "what is kept after 100 cycles of 19 requests"),
     ):
         alone = name != "growth"
         yield Measurement(f"server/{name}", run, "none", protocol, measures=("app",), alone=alone)

@@ -36,17 +36,21 @@ def run_small(order: Order, journal: Journal, *only: str) -> bool:
 
 def test_the_same_seeds_give_the_same_figures(tmp_path: Path) -> None:
     files = []
+    (tmp_path / "set.npz").write_bytes(b"recordings")
     for name in ("one", "two"):
         journal = Journal(tmp_path / f"{name}.jsonl", COMMIT)
-        assert run_small(small(), journal, "small/swipes", "small/numbers")
+        assert run_small(small(tmp_path), journal, "small/swipes", "recorded/set")
         files.append(tmp_path / f"{name}.json")
-        write_results(files[-1], Results(journal.measured, {"app/recognition": "same"}))
+        write_results(files[-1], Results(journal.measured, TREES))
     one, two = (json.loads(each.read_text("utf-8")) for each in files)
     assert one["hash"] == two["hash"]
-    assert one["measurements"].keys() == {"small/swipes", "small/numbers"}
+    assert one["measurements"].keys() == {"small/swipes", "recorded/set"}
     figures = one["measurements"]["small/swipes"]["figures"]
     assert figures["same"]["value"] > 0.5
     assert figures == two["measurements"]["small/swipes"]["figures"]
+    other = Results({"recorded/set": journal.measured["small/swipes"]}, TREES)
+    write_results(files[0], other)
+    assert json.loads(files[0].read_text("utf-8"))["hash"] != two["hash"]
 
 
 @pytest.mark.slow
