@@ -122,8 +122,8 @@ format: $(VENV)/.development $(PAGE_TOOLS)  ## Put the source into the one forma
 docs: $(VENV)/.development  ## Build the documentation's site into build/site; dead links are errors
 	NO_MKDOCS_2_WARNING=1 $(BIN)/python -m mkdocs build --strict --quiet
 
-bench: $(VENV)/.development models  ## Print the benchmarks' ratios
-	$(BIN)/python -m benchmarks
+bench: $(VENV)/.development models  ## Measure speed, memory, load and crashes
+	$(BIN)/python -m benchmarks --quick --only speed clips robot uneven server crashes
 
 release: $(VENV)/.development models  ## Build wheel and sdist twice from the last commit, into dist
 	$(BIN)/python -m release

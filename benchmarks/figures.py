@@ -75,8 +75,9 @@ def share(name: str, hits: int, n: int) -> Figure:
 
 
 def ratio(name: str, values: Sequence[float]) -> Figure:
-    """Return the median of the ratios of several runs, with their range."""
-    return Figure(name, median(values), len(values), (min(values), max(values)), "ratio")
+    """Return the median of the ratios of several runs, with their range; one run has none."""
+    interval = (min(values), max(values)) if len(values) > 1 else None
+    return Figure(name, median(values), len(values), interval, "ratio")
 
 
 def mean(name: str, values: Sequence[float], unit: Unit = "") -> Figure:
@@ -279,14 +280,15 @@ def _format(found: Figure, style: str) -> str:
         return f"{found.value * found.n:.0f}"
     if style == "whole":
         return f"{found.value:.0%}"[:-1] if found.unit == "%" else f"{found.value:.0f}"
-    value = _FORMATS[found.unit].format(found.value)
+    form = "{:.0f}" if found.unit == "" and abs(found.value) >= 10 else _FORMATS[found.unit]
+    value = form.format(found.value)
     sign = " %" if found.unit == "%" and style == "" else ""
     text = value.rstrip("%") + sign
     if style == "bare" or found.interval is None:
         return text
-    ends = _FORMATS[found.unit].replace(".1%", ".0%")
+    ends = form.replace(".1%", ".0%")
     low, high = (ends.format(end).rstrip("%") for end in found.interval)
-    return f"{text} ({low}{' to ' if found.unit == 'points' else '-'}{high})"
+    return f"{text} ({low}{' to ' if found.interval[0] < 0 else '-'}{high})"
 
 
 Table = Callable[[Results], str]

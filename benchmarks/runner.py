@@ -23,19 +23,20 @@ import os
 import re
 import subprocess
 import sys
-import traceback
 from collections.abc import Iterable, Iterator, Sequence
-from concurrent.futures import ProcessPoolExecutor, as_completed
-from dataclasses import dataclass
+from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor, as_completed
+from concurrent.futures.process import BrokenProcessPool
+from dataclasses import dataclass, replace
 from hashlib import sha256
+from importlib import import_module
 from multiprocessing import get_context
 from pathlib import Path
 from statistics import fmean
 from tempfile import TemporaryDirectory
 from time import monotonic
+from traceback import format_exception
 
 from app import __version__
-from benchmarks.accuracy import comparison, damage, landmark_sets, people, samples, spotting, views
 from benchmarks.figures import (
     PAGES,
     RESULTS,
@@ -48,10 +49,25 @@ from benchmarks.figures import (
     fill,
     read_results,
 )
-from benchmarks.simulation import triggers, variation
 
-TOPICS = (comparison, people, views, samples, spotting, damage, landmark_sets, triggers, variation)
-"""Modules with `measurements`, and with `TABLES` that pages quote."""
+TOPICS = (
+    "benchmarks.accuracy.comparison",
+    "benchmarks.accuracy.people",
+    "benchmarks.accuracy.views",
+    "benchmarks.accuracy.samples",
+    "benchmarks.accuracy.spotting",
+    "benchmarks.accuracy.damage",
+    "benchmarks.accuracy.landmark_sets",
+    "benchmarks.simulation.triggers",
+    "benchmarks.simulation.variation",
+    "benchmarks.cost.speed",
+    "benchmarks.cost.clips",
+    "benchmarks.cost.robot",
+    "benchmarks.cost.uneven",
+    "benchmarks.cost.server",
+    "benchmarks.cost.crashes",
+)
+"""Modules with `measurements`, and `TABLES` if pages quote one. A process imports one."""
 
 OUT = ROOT / "benchmarks" / "out"
 
@@ -78,25 +94,35 @@ class Order:
         Whether with fewer draws.
     methods
         Of others, ``package.module:Class``.
+    topics
+        Names of the modules.
 
     """
 
     folder: Path | None
-    quick: bool
-    methods: tuple[str, ...]
+    quick: bool = False
+    methods: tuple[str, ...] = ()
+    topics: tuple[str, ...] = TOPICS
 
     def measurements(self) -> dict[str, Measurement]:
         """Return all measurements by name."""
-        found = {}
-        for topic in TOPICS:
-            for each in topic.measurements(self.folder or Path("FOLDER"), self.methods):
-                found[each.name] = each
-        return found
+        folder = self.folder or Path("FOLDER")
+        modules = [import_module(each) for each in self.topics]
+        found = [each for topic in modules for each in topic.measurements(folder, self.methods)]
+        return {each.name: each for each in found}
+
+    def narrow(self, name: str) -> Order:
+        """Return the order of the topic of a measurement alone: a process imports no other."""
+        each_alone = (replace(self, topics=(each,)) for each in self.topics)
+        return next(order for order in each_alone if name in order.measurements())
 
 
 def tables() -> dict[str, Table]:
     """Return the tables of all topics by name."""
-    return {name: write for topic in TOPICS for name, write in topic.TABLES.items()}
+    found: dict[str, Table] = {}
+    for topic in TOPICS:
+        found |= getattr(import_module(topic), "TABLES", {})
+    return found
 
 
 def measure(order: Order, name: str, commit: str, trees: dict[str, str]) -> Measured:
@@ -132,8 +158,8 @@ class Journal:
     def __init__(self, path: Path, commit: str) -> None:
         self._path, self.commit = path, commit
         self.measured: dict[str, Measured] = {}
-        lines = path.read_text("utf-8").splitlines() if path.is_file() else []
-        for number, line in enumerate(lines, 1):
+        text = path.read_text("utf-8") if path.is_file() else ""
+        for number, line in enumerate(text.splitlines(), 1):
             try:
                 content = json.loads(line)
                 name, measured = content["name"], Measured.from_dict(content["measured"])
@@ -142,11 +168,16 @@ class Journal:
                 continue
             if measured.commit != commit:
                 aside = path.with_name(f"{path.stem}-{measured.commit[:8]}{path.suffix}")
-                path.replace(aside)
+                with aside.open("a", encoding="utf-8") as file:
+                    file.write(text)
+                path.unlink()
                 print(f"{path} is of commit {measured.commit[:8]}: it is kept as {aside.name}.")
                 self.measured = {}
                 return
             self.measured[name] = measured
+        if text and not text.endswith("\n"):
+            with path.open("a", encoding="utf-8") as file:
+                file.write("\n")
 
     def keep(self, name: str, measured: Measured) -> None:
         """Write down a measurement, and have it on the disk."""
@@ -203,41 +234,52 @@ def run(
     succeeded = True
     for alone in (False, True):
         workers = 1 if alone else os.cpu_count() or 1
-        # A process each: what one leaves in memory or in threads changes no other.
-        with ProcessPoolExecutor(
-            workers, mp_context=get_context("spawn"), max_tasks_per_child=1
-        ) as pool:
+        with ThreadPoolExecutor(workers) as pool:
             futures = {
-                pool.submit(measure, order, each.name, journal.commit, trees): each.name
-                for each in waiting
-                if each.alone is alone
+                pool.submit(_measure_apart, order.narrow(name), name, journal.commit, trees): name
+                for name in (each.name for each in waiting if each.alone is alone)
             }
-            for future in as_completed(futures):
-                name = futures[future]
-                del left[name]
-                try:
-                    measured = future.result()
-                except Exception:
-                    succeeded = False
-                    print(f"{name} failed:\n{traceback.format_exc()}", flush=True)
-                    continue
-                journal.keep(name, measured)
-                done = f"{len(chosen) - len(left)} of {len(chosen)}"
-                minutes = sum(left.values()) / workers / 60
-                print(f"{done}: {name}, {measured.seconds:.0f} s; about {minutes:.0f} min left")
+            try:
+                for future in as_completed(futures):
+                    name = futures[future]
+                    del left[name]
+                    if reason := _why_failed(future.exception()):
+                        succeeded = False
+                        print(f"{name} failed: {reason}", flush=True)
+                        continue
+                    journal.keep(name, future.result())
+                    done = f"{len(chosen) - len(left)} of {len(chosen)}"
+                    seconds, minutes = future.result().seconds, sum(left.values()) / workers / 60
+                    print(f"{done}: {name}, {seconds:.0f} s; about {minutes:.0f} min left")
+            except KeyboardInterrupt:
+                pool.shutdown(wait=False, cancel_futures=True)
+                raise
     return succeeded
+
+
+def _measure_apart(order: Order, name: str, commit: str, trees: dict[str, str]) -> Measured:
+    """Measure in a process of its own: what it leaves, and its end, change no other."""
+    with ProcessPoolExecutor(1, mp_context=get_context("spawn")) as pool:
+        return pool.submit(measure, order, name, commit, trees).result()
+
+
+def _why_failed(error: BaseException | None) -> str:
+    if isinstance(error, BrokenProcessPool):
+        return "its process was killed, as the system does when memory runs out."
+    return "".join(format_exception(error)) if error else ""
 
 
 def write_results(path: Path, results: Results) -> None:
     """Write the file of results, with the last change of what it measures."""
     measurements = {name: each.to_dict() for name, each in results.measured.items()}
-    # Another run at the same commit has the same hash: what is timed is left out.
+    # Ratios are mostly of times; what reads no data measures this machine.
     steady = {
         name: [
-            each["data_hash"],
-            {k: v for k, v in each["figures"].items() if v["unit"] != "ratio"},
+            measured["data_hash"],
+            {key: each for key, each in measured["figures"].items() if each["unit"] != "ratio"},
         ]
-        for name, each in measurements.items()
+        for name, measured in measurements.items()
+        if measured["data_hash"]
     }
     content = {
         "version": __version__,
@@ -277,13 +319,14 @@ def hash_folders() -> dict[str, str]:
 
 
 def _git(*words: str, **variables: str) -> str:
-    return subprocess.run(
-        ("git", "-c", "safe.directory=*", "-C", str(ROOT), *words),
-        env={**os.environ, **variables},
-        check=True,
-        capture_output=True,
-        text=True,
-    ).stdout.strip()
+    environment = {**os.environ, **variables}
+    command = ("git", "-c", "safe.directory=*", "-C", str(ROOT), *words)
+    try:
+        ended = subprocess.run(command, env=environment, check=True, capture_output=True, text=True)
+    except (OSError, subprocess.CalledProcessError) as error:
+        reason = str(getattr(error, "stderr", error)).strip()
+        raise BenchError(f"the bench needs a checkout and git: {reason}") from error
+    return ended.stdout.strip()
 
 
 def print_figures(results: Results, names: Iterable[str]) -> None:
@@ -313,6 +356,8 @@ def main() -> None:
         sys.exit(bench(given))
     except (BenchError, FigureError) as error:
         parser.error(str(error))
+    except KeyboardInterrupt:
+        parser.exit(130, "Broken off; the same command goes on where it was, unless it is quick.\n")
 
 
 def bench(given: argparse.Namespace) -> int:
@@ -343,7 +388,8 @@ def bench(given: argparse.Namespace) -> int:
     print_figures(Results(made, trees), [each.name for each in chosen if each.name in made])
     if given.method:
         made = {name: each.beside(before.measured.get(name)) for name, each in made.items()}
-        print(f"\n{comparison.write_nearest(Results(made, trees))}")
+        write_nearest = tables()["nearest"]
+        print(f"\n{write_nearest(Results(made, trees))}")
     everything = {**before.measured, **made}
     results = Results({name: everything[name] for name in known if name in everything}, trees)
     write_results(RESULTS if kept else OUT / "results.json", results)

@@ -42,6 +42,8 @@ YARDSTICK = "full"
 PEOPLE = (1, 3)
 OF_THE_LANGUAGE = ("right", "asked", "refused", "wrong")
 OUT_OF_VOCABULARY = ("answered", "asked", "refused")
+LIMITS = (0.5, 0.7, 0.8, 0.9)
+"""Confidences below which an answer is refused, as by ``least_confidence`` of a vehicle's table."""
 
 NAMES = {
     "paper": "profile `paper`",
@@ -85,6 +87,8 @@ class Outcomes:
         By relation: takes of gestures of the language, by whether their nearest gesture is right.
     counts
         By relation: takes by outcome.
+    confidences
+        By relation and outcome: the confidence of each answer that has one.
     fitting, predicting
         Seconds of processor time for each language, and for each take.
 
@@ -92,6 +96,7 @@ class Outcomes:
 
     nearest: dict[str, Counter[bool]] = field(default_factory=lambda: defaultdict(Counter))
     counts: dict[str, Counter[str]] = field(default_factory=lambda: defaultdict(Counter))
+    confidences: dict[str, list[float]] = field(default_factory=lambda: defaultdict(list))
     fitting: list[float] = field(default_factory=list)
     predicting: list[float] = field(default_factory=list)
 
@@ -144,7 +149,10 @@ def measure(make: Callable[[], Method], languages: Sequence[Language]) -> Outcom
                 named = {said.label, said.nearest, *(said.pair or ())} - {None}
                 if not named <= labels:
                     raise MethodError(f"{named - labels} is not in the language {sorted(labels)}")
-                outcomes.counts[relation][judge(said, label, label in labels)] += 1
+                outcome = judge(said, label, label in labels)
+                outcomes.counts[relation][outcome] += 1
+                if said.label is not None and said.confidence is not None:
+                    outcomes.confidences[f"{relation}/{outcome}"].append(said.confidence)
                 if label in labels:
                     outcomes.nearest[relation][said.nearest == label] += 1
     return outcomes
@@ -177,34 +185,49 @@ def find_methods(names: Iterable[str]) -> dict[str, Callable[[], Method]]:
     return found
 
 
-def compare(
+def compare_on_set(
     methods: tuple[str, ...], trajectories: Path, recorded: RecordedSet, quick: bool
 ) -> Iterator[Figure]:
-    """Yield what every method says of the takes of a set, and what it costs."""
+    """Draw languages of a set, and yield what every method says of its takes."""
     count, queries = (3, 15) if quick else (20, 30)
     far = far_movements(trajectories)
-    languages = [*draw_languages(recorded, far, count, queries, seed=1)]
+    return compare(methods, recorded.name, [*draw_languages(recorded, far, count, queries, 1)])
+
+
+def compare(methods: tuple[str, ...], data: str, languages: Sequence[Language]) -> Iterator[Figure]:
+    """Yield what every method says of takes, and what it costs."""
     found: dict[str, Outcomes] = {}
     for name, make in find_methods((YARDSTICK, *methods) if methods else METHODS).items():
         try:
             found[name] = measure(make, languages)
         except MethodError as error:
-            print(f"{name} has no figures of {recorded.name}: {error}", flush=True)
+            print(f"{name} has no figures of {data}: {error}", flush=True)
     first = found[YARDSTICK]
     for name, outcomes in found.items():
         method = name.replace(" ", "-")
         for relation, nearest in outcomes.nearest.items():
             yield share(f"{method}/{relation}", nearest[True], nearest.total())
-        # The others answer each take as a gesture.
-        for relation, counts in outcomes.counts.items() if name in (*PROFILES, *methods) else ():
-            known = relation in outcomes.nearest
-            for outcome in OF_THE_LANGUAGE if known else OUT_OF_VOCABULARY:
-                yield share(f"{method}/{relation}/{outcome}", counts[outcome], counts.total())
+        if name in (*PROFILES, *methods):  # the others answer each take as a gesture
+            yield from count_answers(method, outcomes)
         for cost, mine, theirs in (
             ("fit", outcomes.fitting, first.fitting),
             ("predict", outcomes.predicting, first.predicting),
         ):
             yield Figure(f"{method}/{cost}", fmean(mine) / fmean(theirs), len(mine), unit="ratio")
+
+
+def count_answers(method: str, outcomes: Outcomes) -> Iterator[Figure]:
+    """Yield what a method answers to each kind of take, and what of it from each confidence on."""
+    for relation, counts in outcomes.counts.items():
+        known = relation in outcomes.nearest
+        for outcome in OF_THE_LANGUAGE if known else OUT_OF_VOCABULARY:
+            name = f"{method}/{relation}/{outcome}"
+            yield share(name, counts[outcome], counts.total())
+            if outcomes.confidences and outcome in ("right", "wrong", "answered"):
+                for limit in LIMITS:
+                    confidences = outcomes.confidences[f"{relation}/{outcome}"]
+                    kept = sum(each >= limit for each in confidences)
+                    yield share(f"{name}-from-{limit:g}", kept, counts.total())
 
 
 def measurements(folder: Path, methods: tuple[str, ...]) -> Iterator[Measurement]:
@@ -214,7 +237,7 @@ def measurements(folder: Path, methods: tuple[str, ...]) -> Iterator[Measurement
         "comparison",
         folder,
         (*SETS, *ARM_CLASSES),
-        partial(compare, methods, trajectories),
+        partial(compare_on_set, methods, trajectories),
         "20 languages of all classes, 30 takes each by the same person, by others, of classes that "
         "the language lacks, and of people who do not sign; one demonstration by one or by three",
         trajectories / "kindergator.npz",
@@ -268,4 +291,22 @@ def _show(results: Results, name: str, figures: Sequence[str]) -> str:
     return "-" if "-" in shown else " / ".join(shown)
 
 
-TABLES = {"nearest": write_nearest, "answers": write_answers}
+def write_limits(results: Results) -> str:
+    """Write what `full` answers from a confidence on: right, wrong, and takes of no gesture."""
+    ends = ("", *(f"-from-{limit:g}" for limit in LIMITS))
+    answers = ("another-1/right", "another-1/wrong", "near/answered")
+    rows = [
+        [name]
+        + [
+            " / ".join(
+                results.show(f"comparison/{name}", f"full/{answer}{end}", "bare?")
+                for answer in answers
+            )
+            for end in ends
+        ]
+        for name in results.names("comparison")
+    ]
+    return table(("set", "all answers", *(f"from {limit:g} on" for limit in LIMITS)), rows)
+
+
+TABLES = {"nearest": write_nearest, "answers": write_answers, "limits": write_limits}

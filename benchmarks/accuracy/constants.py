@@ -6,12 +6,10 @@ is right: for every set at the value that is best on the sets of other people, a
 shipped one. `rejection` prints, for languages of half of a set's classes, the scores of right takes
 by others, of takes of the other classes (near), and of movements of people who do not sign (far,
 for whole bodies); how many of each the shipped limit rejects or accepts, and the one chosen without
-the set; and the confidence's coefficients fitted without it. `table` prints what becomes of takes
-by others, of rendered clips too, before and after the second opinion (`decision_table`).
+the set; and the confidence's coefficients fitted without it.
 
     python -m benchmarks.accuracy.constants ../shared/data --subject voters
     python -m benchmarks.accuracy.constants ../shared/data --subject rejection
-    python -m benchmarks.accuracy.constants ../shared/data --subject table --draws 12
 """
 
 from __future__ import annotations
@@ -41,11 +39,9 @@ from app.recognition.voters.motion_voters import Path, Place
 from app.recognition.voters.registry import MOTION_VOTERS
 from benchmarks.accuracy.people import recognize
 from benchmarks.arguments import set_arguments
-from benchmarks.decision_table import compare_all, print_table
 from benchmarks.sets.every_set import all_sets, is_of_bodies
 from benchmarks.sets.one_shot_draws import Draw, demonstrated, draws
 from benchmarks.sets.recorded_sets import DOMAINS, RecordedSet
-from benchmarks.sets.rendered_clips import CLIPS, rendered_clips
 from benchmarks.sets.simulated_bodies import CARRIED_DOMAINS
 from benchmarks.sets.whole_body_sets import far_movements
 
@@ -329,17 +325,11 @@ def _quantiles(scores: FloatArray, *percent: int) -> str:
 def main() -> None:
     """Print the tables of one subject."""
     parser = set_arguments(__doc__, draws=10, queries=40)
-    parser.add_argument("--subject", choices=("voters", "rejection", "table"), default="voters")
+    parser.add_argument("--subject", choices=("voters", "rejection"), default="voters")
     given = parser.parse_args()
     folder = given.data / "trajectories"
     sets = all_sets(folder, given.sets)
-    if given.subject == "table":
-        clips = rendered_clips(
-            given.data, [name for name in CLIPS if name in (given.sets or CLIPS)]
-        )
-        data = compare_all(sets, given.draws, given.queries, given.seed)
-        print_table(data | compare_all(clips, 1, given.queries, given.seed), SAME_PEOPLE)
-    elif given.subject == "voters":
+    if given.subject == "voters":
         print_voters({each.name: [*ask(each, given)] for each in sets})
     else:
         far = far_movements(folder)

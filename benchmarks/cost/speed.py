@@ -1,174 +1,186 @@
-"""Speed: time of a recognition by profile ``full`` relative to the other work on a frame.
+"""Speed: processor time of the recogniser's work relative to other work in the same run.
 
-A language of twenty gestures, recordings of three seconds and 33 landmarks. Compared are one frame
-of pose estimation (body and hands of a sample clip), the published implementation's steps (draw,
-describe and compare once for each gesture, without the picture that it writes to the disk each
-time), and the paper's steps done once for each gesture by our own code. Processor time of all
-threads, so that other programs do not count; OpenCV works in one (`main`), and with
-``OMP_NUM_THREADS=1`` so do the products of matrices.
+A language of twenty gestures, takes of three seconds and 33 landmarks, drawn at random. Compared
+are: one frame of pose estimation (body and hands of a sample clip), the published implementation's
+steps (draw, describe and compare once for each gesture, without the picture that it writes to the
+disk each time), the paper's steps done once for each gesture by our own code, larger languages, and
+corrections of water. Processor time of all threads, so that other programs do not count; OpenCV
+works in one, since its idle threads spin, and with ``OMP_NUM_THREADS=1`` so do products of
+matrices.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from contextlib import closing
-from dataclasses import dataclass
-from itertools import islice
-from statistics import median
+from functools import partial
+from itertools import cycle, islice
+from pathlib import Path
+from statistics import fmean, median
 from time import process_time
 
 import cv2
 import numpy as np
 
-from app.recognition import Gesture, Language, PoseSequence, Recognizer
+from app.recognition import Gesture, Language, PoseSequence, Recognizer, record
 from app.recognition.estimation.factory import create_estimator
+from app.recognition.estimation.water import CORRECTIONS, apply_correction
+from app.recognition.gestures.profile import PROFILES
 from app.recognition.poses.landmarks import POSE_LANDMARKS
 from app.recognition.recording.video import read_frames
 from app.resources import samples_dir
-from benchmarks.cost.recognition import wander
+from benchmarks.figures import Figure, Measurement, ratio
+from benchmarks.methods.base import Demonstration
 
+CLIPS = samples_dir() / "clips"
 GESTURES = 20
-ROUNDS = 25
+SIZES = (100, 1000)
+SMALLEST = 8
 IN_A_ROW = 4
 """Runs of a task in its turn: the first follows another task, the others follow the same task."""
 
 FRAMES = 60
+"""Frames of a clip that are estimated, about two seconds."""
+
+LARGE = (1768, 994)
+"""Pixels of the largest of the real clips, which is enlarged from a sample clip here."""
 
 ARM = {"elbow": 0.5, "wrist": 1.0, "index": 1.15, "pinky": 1.15, "thumb": 1.1}
 """Position of a landmark along the right arm, from 0 at the shoulder to 1 at the wrist."""
 
 
-def whole_body(seed: int) -> PoseSequence:
+def wander(seed: int) -> PoseSequence:
     """Let a standing diver draw a smooth random figure with the right arm; all 33 landmarks."""
-    drawn, random = wander(seed), np.random.default_rng(seed)
-    xy = random.normal(0, 0.7, (len(drawn), len(POSE_LANDMARKS), 2))
-    xy += np.stack([np.full(len(POSE_LANDMARKS), 320.0), np.linspace(80, 460, 33)], axis=1)
-    for name in drawn.landmarks:
-        xy[:, POSE_LANDMARKS.index(name)] = drawn.column(name)
-    shoulder, wrist = drawn.column("right_shoulder"), drawn.column("right_wrist")
-    for part, share in ARM.items():
-        xy[:, POSE_LANDMARKS.index(f"right_{part}")] = shoulder + share * (wrist - shoulder)
+    random = np.random.default_rng(seed)
+    time = np.linspace(0.0, 3.0, 90)
+    phase = 2 * np.pi * np.outer(np.arange(1, 5), time / time[-1])
+    size = random.normal(size=(2, 4)) / np.arange(1, 5)
+    wrist = size @ np.sin(phase + random.uniform(0, 2 * np.pi, size=(4, 1)))
+    wrist = 200 + (wrist * 120 / np.ptp(wrist, axis=1).max()).T
+    xy = np.stack([np.full(len(POSE_LANDMARKS), 320.0), np.linspace(80, 460, 33)], axis=1)
+    xy = xy + random.normal(0, 0.7, (len(time), len(POSE_LANDMARKS), 2))
+    shoulder = np.array([260.0, 160.0])
+    for name, place in (
+        ("right_shoulder", shoulder),
+        ("left_shoulder", np.array([380.0, 160.0])),
+        ("right_hip", np.array([280.0, 340.0])),
+        ("left_hip", np.array([360.0, 340.0])),
+        *((f"right_{part}", shoulder + along * (wrist - shoulder)) for part, along in ARM.items()),
+    ):
+        xy[:, POSE_LANDMARKS.index(name)] = place
     return PoseSequence(
         landmarks=POSE_LANDMARKS,
         xy=xy + random.normal(0, 0.5, xy.shape),
-        time=drawn.time,
-        frame_size=drawn.frame_size,
+        time=time,
+        frame_size=(640, 480),
     )
 
 
-@dataclass(frozen=True)
-class Took:
-    """The median processor time of a task, in seconds.
-
-    Attributes
-    ----------
-    at_first
-        Right after another task, with its own code and data no longer in the caches: as a robot
-        recognises a take after hundreds of frames.
-    again
-        Right after the same task, as it is usually measured.
-
-    """
-
-    at_first: float
-    again: float
+def learn(count: int) -> Language:
+    """Return a language of that many random figures."""
+    return Language("bench", [Gesture.from_demonstration(f"{n}", wander(n)) for n in range(count)])
 
 
-def measure_seconds(*works: Callable[[], object], rounds: int = ROUNDS) -> list[Took]:
-    """Measure some tasks, each after one run that does not count.
-
-    They take turns, so that a temporary load on the machine slows all of them down alike.
-    """
-    for work in works:
-        work()
-    times: list[list[list[float]]] = [[] for _ in works]
-    for _ in range(rounds):
-        for work, turns in zip(works, times, strict=True):
-            turns.append([_seconds(work) for _ in range(IN_A_ROW)])
-    return [
-        Took(
-            at_first=median(turn[0] for turn in turns),
-            again=median(each for turn in turns for each in turn[1:]),
-        )
-        for turns in times
-    ]
-
-
-def _seconds(work: Callable[[], object]) -> float:
+def seconds(work: Callable[[], object]) -> float:
+    """Return the processor time of some work."""
     start = process_time()
     work()
     return process_time() - start
 
 
-def seconds_a_frame() -> float:
-    """Return the median processor time of finding body and hands in a frame of a sample clip."""
-    clip = samples_dir() / "clips" / "circle-demonstration.mp4"
-    times = []
-    with read_frames(clip) as reader, closing(create_estimator()) as estimator:
-        for frame in islice(reader, FRAMES):
-            start = process_time()
-            estimator.estimate(frame.image, frame.time)
-            times.append(process_time() - start)
-    return median(times)
+def compare_work(quick: bool) -> Iterator[Figure]:
+    """Compare a recognition by profile ``full`` with other work; every round does all of it."""
+    cv2.setNumThreads(1)
+    language, query = learn(GESTURES), wander(GESTURES)
+    recognizer = Recognizer(language, "full")
+    alone = [Recognizer(Language("one", [each]), "paper") for each in language.gestures]
 
+    def add() -> None:
+        Recognizer(language.with_gesture(Gesture.from_demonstration("one more", query)), "full")
 
-def published_steps(
-    demonstrations: list[PoseSequence], query: PoseSequence
-) -> Callable[[], object] | None:
-    """Return a function that labels a query by the published steps; None without mahotas."""
+    works: dict[str, Callable[[], object]] = {
+        "recognition": partial(recognizer.recognize, query),
+        "paper": lambda: [one.recognize(query) for one in alone],
+    }
     try:
-        from benchmarks.methods.base import Demonstration
         from benchmarks.methods.published import PublishedCode
     except ModuleNotFoundError:
-        return None
-    method = PublishedCode()
-    method.fit([Demonstration(f"figure {at}", each) for at, each in enumerate(demonstrations)])
-    frames = method.gather(query)  # as they arrive there, one by one
-    return lambda: method.name(frames)
-
-
-def main() -> None:
-    """Print the ratios."""
-    # Idle threads of OpenCV spin, and their time would count for the published steps.
-    cv2.setNumThreads(1)
-    demonstrations = [whole_body(seed) for seed in range(GESTURES)]
-    gestures = [
-        Gesture.from_demonstration(f"figure {number}", poses)
-        for number, poses in enumerate(demonstrations)
-    ]
-    language, query = Language("bench", gestures), whole_body(GESTURES)
-    recognizer = Recognizer(language, "full")
-    alone = [Recognizer(Language("one", [gesture]), "paper") for gesture in gestures]
-    steps = published_steps(demonstrations, query)
-    recognition, once_each, published = measure_seconds(
-        lambda: recognizer.recognize(query),
-        lambda: [one.recognize(query) for one in alone],
-        steps or (lambda: None),
-    )
-    frame = seconds_a_frame()
-
-    def add() -> Recognizer:
-        added = Gesture.from_demonstration("one more", query)
-        return Recognizer(language.with_gesture(added), "full")
-
-    (adding,) = measure_seconds(add, rounds=3)
-    head = f"profile full, {GESTURES} gestures, {len(POSE_LANDMARKS)} landmarks: "
-    of_a_frame = recognition.at_first / frame
-    print(f"{head}a recognition takes {of_a_frame:.2f} of one frame of pose estimation")
-    if steps is None:
-        print(f"{head}the published steps need mahotas, which has no wheel for this platform")
+        print("The published steps are left out: mahotas has no wheel for this platform.")
     else:
-        print(f"{head}a recognition takes {_ratio(recognition, published)} of the published steps")
-    print(
-        f"{head}a recognition takes {_ratio(recognition, once_each)} of the paper's steps done "
-        "once a gesture by our own code"
-    )
-    print(
-        f"{head}adding a gesture takes {adding.again / recognition.again:.0f} recognitions, "
-        f"{adding.again / frame:.0f} frames of pose estimation"
-    )
+        method = PublishedCode()
+        method.fit([Demonstration(f"{n}", wander(n)) for n in range(GESTURES)])
+        works["published"] = partial(method.name, method.gather(query))
+    found: dict[str, list[float]] = {}
+    with read_frames(CLIPS / "circle-demonstration.mp4") as reader:
+        images = [each.image for each in islice(reader, FRAMES)]
+    with closing(create_estimator()) as estimator:
+        frames = cycle(partial(estimator.estimate, each) for each in images)
+        for number in range(5 if quick else 25):
+            frame = fmean(
+                seconds(partial(next(frames), 0.04 * (number * IN_A_ROW + each)))
+                for each in range(IN_A_ROW)
+            )
+            turns = {name: [seconds(work) for _ in range(IN_A_ROW)] for name, work in works.items()}
+            if number == 0:  # it loads code
+                continue
+            first, *again = turns.pop("recognition")
+            found.setdefault("of-a-frame", []).append(first / frame)
+            for name, (other_first, *other_again) in turns.items():
+                found.setdefault(f"of-{name}", []).append(median(again) / median(other_again))
+                found.setdefault(f"of-{name}-at-first", []).append(first / other_first)
+    recognition = median(seconds(works["recognition"]) for _ in range(25))
+    found["adding"] = [seconds(add) / recognition for _ in range(3)]
+    yield from (ratio(name, values) for name, values in found.items())
 
 
-def _ratio(one: Took, other: Took) -> str:
-    again, at_first = one.again / other.again, one.at_first / other.at_first
-    return f"{again:.3f} ({at_first:.3f} right after other work)"
+def compare_sizes(quick: bool) -> Iterator[Figure]:
+    """Compare recognitions by larger languages with one of eight gestures.
+
+    The query is rendered and described once per distinct set of salient keypoints, so a thousand
+    gestures must cost far less than 125 times as much as eight.
+    """
+    whole, query = learn(max(SIZES)), wander(max(SIZES))
+    for profile in PROFILES:
+        recognizers = [
+            Recognizer(Language("bench", whole.gestures[:size]), profile)
+            for size in (SMALLEST, *SIZES)
+        ]
+        rounds = [
+            [seconds(partial(each.recognize, query)) for each in recognizers]
+            for _ in range(4 if quick else 16)
+        ][1:]
+        for place, size in enumerate(SIZES, 1):
+            yield ratio(f"{profile}/{size}", [each[place] / each[0] for each in rounds])
+
+
+def compare_water(quick: bool) -> Iterator[Figure]:
+    """Compare the automatic water correction with none, and each correction with a frame."""
+    clips = sorted(CLIPS.glob("*-test-1.mp4"))[: 1 if quick else 6]
+    automatic = []
+    with closing(create_estimator()) as estimator:
+        read = partial(record, estimator=estimator)
+        for clip in clips:
+            without = seconds(partial(read, clip, water="off"))
+            automatic.append(seconds(partial(read, clip, water="auto")) / without)
+        with read_frames(clips[0]) as reader:
+            images = [each.image for each in islice(reader, FRAMES)]
+        frame = median(
+            seconds(partial(estimator.estimate, image, 0.04 * number))
+            for number, image in enumerate(images)
+        )
+    yield ratio("automatic", automatic)
+    for name, image in (("small", images[0]), ("large", cv2.resize(images[0], LARGE))):
+        for correction in CORRECTIONS[1:]:
+            work = partial(apply_correction, np.asarray(image, np.uint8), correction)
+            yield ratio(f"{name}/{correction}", [seconds(work) / frame for _ in range(10)])
+
+
+def measurements(folder: Path, methods: tuple[str, ...]) -> Iterator[Measurement]:
+    """Yield what each part of the recogniser costs."""
+    for name, run, data, protocol in (
+        ("recognition", compare_work, "random figures", "a recognition to other work, 24 rounds"),
+        ("gestures", compare_sizes, "random figures", "languages of 100 and 1000 gestures to 8"),
+        ("water", compare_water, "sample clips", "the choice of a water correction, to none"),
+    ):
+        protocol += "; processor time, median and range"
+        yield Measurement(f"speed/{name}", run, data, protocol, alone=True)

@@ -234,14 +234,17 @@ class StageProfile:
 
     def frames_per_second(self, stage: Stage) -> float:
         """Return the frame rate with this stage and all before it."""
-        seconds = sum(self.costs[each].seconds for each in _up_to(stage))
+        seconds = self._up_to(stage).seconds
         return self.frames / seconds if seconds else 0.0
 
     def joules_per_frame(self, stage: Stage) -> float | None:
         """Return the energy per frame with this stage and all before it; None without a meter."""
         if self.energy is None or not self.frames:
             return None
-        return sum(self.costs[each].joules for each in _up_to(stage)) / self.frames
+        return self._up_to(stage).joules / self.frames
+
+    def _up_to(self, stage: Stage) -> Cost:
+        return sum((self.costs[each] for each in STAGES[: STAGES.index(stage) + 1]), Cost())
 
     @property
     def share(self) -> float:
@@ -308,54 +311,44 @@ class StageProfiler:
         self._people = PeopleInStream()
         self._listener = listener
         self._meter = meter
-        self._profile = StageProfile(energy=meter.name if meter else None)
         self._last = Cost()
-        self._takes = 0
 
-    def run(self, source: Source, is_over: Callable[[], bool]) -> StageProfile:
+    def run(self, source: Source, is_over: Callable[[], bool] = bool) -> StageProfile:
         """Profile a source until it ends or `is_over`, called after every frame, returns True."""
+        profile = StageProfile(energy=self._meter.name if self._meter else None)
         self._body.reset()
         self._whole.reset()
         self._lap()
         number = 0
         for given in source:
             if isinstance(given, Frame):
-                costs: dict[Stage, Cost] = {"grab": self._lap(), **self._process(given)}
+                costs: dict[Stage, Cost] = {"grab": self._lap()}
+                takes = self._process(given, costs)
                 number += 1
                 if number > WARM_UP:
-                    self._add(costs)
+                    profile.frames += 1
+                    profile.takes += takes
+                    for stage, cost in costs.items():
+                        profile.costs[stage] += cost
             if is_over():
                 break
             self._lap()
-        return self._profile
+        return profile
 
-    def _process(self, frame: Frame) -> dict[Stage, Cost]:
-        """Run all stages on a frame and return the cost of each."""
+    def _process(self, frame: Frame, costs: dict[Stage, Cost]) -> int:
+        """Run all stages on a frame, add the cost of each, and return the takes that ended."""
         self._body.estimate(frame.image, frame.time)
-        body = self._lap()
+        costs["pose"] = self._lap()
         found = self._whole.estimate(frame.image, frame.time)
-        whole = self._lap()
+        costs["hands"] = self._lap() - costs["pose"]
         _, found = self._people.follow(frame.time, found).frames[-1]
         score = best_salute(found.hands)
-        salute = self._lap()
+        costs["salute"] = self._lap()
         height, width = frame.image.shape[:2]
         moment = build_frame_sequence(found, frame.time, (width, height))
         events = self._listener.feed(moment, score)
-        recognition = self._lap()
-        self._takes = sum(isinstance(event, TakeEvent) for event in events)
-        return {
-            "pose": body,
-            "hands": whole - body,
-            "salute": salute,
-            "recognition": recognition,
-        }
-
-    def _add(self, costs: dict[Stage, Cost]) -> None:
-        profile = self._profile
-        profile.frames += 1
-        profile.takes += self._takes
-        for stage, cost in costs.items():
-            profile.costs[stage] += cost
+        costs["recognition"] = self._lap()
+        return sum(isinstance(event, TakeEvent) for event in events)
 
     def _lap(self) -> Cost:
         """Return the cost since the last call."""
@@ -363,10 +356,6 @@ class StageProfiler:
         now = Cost(clock.perf_counter(), joules, clock.process_time())
         taken, self._last = now - self._last, now
         return taken
-
-
-def _up_to(stage: Stage) -> tuple[Stage, ...]:
-    return STAGES[: STAGES.index(stage) + 1]
 
 
 def build_table(profile: StageProfile) -> Table:
@@ -382,9 +371,8 @@ def build_table(profile: StageProfile) -> Table:
     table.add_column("joules a frame", justify="right")
     for stage in STAGES:
         joules = profile.joules_per_frame(stage)
-        rate = profile.frames_per_second(stage)
-        row = "" if joules is None else f"{joules:.2f}"
-        table.add_row(stage if stage == STAGES[0] else f"+ {stage}", f"{rate:.1f}", row)
+        energy = "" if joules is None else f"{joules:.2f}"
+        table.add_row(f"+ {stage}", f"{profile.frames_per_second(stage):.1f}", energy)
     return table
 
 

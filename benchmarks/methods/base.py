@@ -42,12 +42,15 @@ class Prediction:
         The two gestures that are asked about, nearest first.
     distances
         By label, smaller = nearer; empty if the method has none, or cannot compare the take.
+    confidence
+        Of the label, in [0, 1]; answers below a limit are then also counted as refused.
 
     """
 
     label: str | None = None
     pair: tuple[str, str] | None = None
     distances: Mapping[str, float] = field(default_factory=dict)
+    confidence: float | None = None
 
     @property
     def nearest(self) -> str | None:

@@ -27,7 +27,7 @@ class OurProfile(Method):
         """Recognise a take."""
         result = self._recognizer.recognize(take)
         distances = dict(zip(result.gestures, result.scores.tolist(), strict=True))
-        return Prediction(result.label, result.pair, distances)
+        return Prediction(result.label, result.pair, distances, result.confidence)
 
 
 def teach(demonstrations: Sequence[Demonstration]) -> Gesture:

@@ -7,7 +7,7 @@ deviation; the Fourier descriptors keep position, size and starting point; the f
 taken, which may be any. The query is drawn, described and compared once for each gesture of the
 language.
 
-For `benchmarks.cost.speed` it also has the cost of the published implementation: coordinates are
+For the topic `speed` it also has the cost of the published implementation: coordinates are
 gathered and lines drawn in plain loops over frames and keypoints, moments come from the same two
 libraries (scikit-image and mahotas), and every voter finds the contours for itself.
 

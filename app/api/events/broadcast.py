@@ -19,8 +19,8 @@ Result = TypeVar("Result")
 
 SECONDS_PER_STREAM = 0.001
 """Shortest time in seconds between two progress events of a job, for each open stream: writing one
-takes 20 to 150 us of a core (`benchmarks.cost.scale`), so that a running job takes at most a sixth
-of a core. With fewer than a hundred streams each event is written, ten a second."""
+takes 20 to 150 us of a core (`benchmarks/studies/server.md`), so that a running job takes at most a
+sixth of a core. With fewer than a hundred streams each event is written, ten a second."""
 
 MOST_UNREAD = 256
 """Events kept for a stream that is not read; older ones are dropped, because each event describes a

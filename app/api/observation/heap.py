@@ -31,7 +31,7 @@ async def keep_trimmed() -> None:
 
     glibc keeps freed memory between used blocks, in one arena for each thread that ever waited for
     another: under steady load resident memory grows while used memory stays the same
-    (`python -m benchmarks.soak`, `docs/reliability.md`).
+    (`benchmarks/studies/server.md`).
     """
     trim = _find("malloc_trim")
     while trim is not None:

@@ -10,7 +10,7 @@ from playwright.sync_api import Page, expect
 
 from app.settings import Settings
 from app.store import Database
-from benchmarks.cost.scale import CLIPS_OF_A_PAGE, fill
+from benchmarks.cost.server import CLIPS_OF_A_PAGE, fill
 from tests.api.running import Running
 from tests.browser.conftest import OpenPage
 from tests.browser.library import add_clip

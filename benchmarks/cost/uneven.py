@@ -2,30 +2,24 @@
 
 A gesture of the sample languages is shown again and again, `PAUSE` seconds apart; the listener sees
 the frames that are due at uneven steps (exponential) or even ones, with their true times. For each
-rate: right and wrong takes, with the rule of `app.recognition.recording.recording` and without.
-Then the longest gap that a take may have, chosen with each gesture left out in turn: the largest at
-which no wrong take of the other gestures reaches from one showing into the next.
+rate: right and wrong takes, with the rule of `app.recognition.recording.recording` and without. The
+*limit* is the longest gap that a take may have so that no wrong take reaches from one showing into
+the next: the rule's has to lie below that of every gesture that is not `three`.
 
-    python -m benchmarks.uneven_frames --showings 480
-
-With `--live` a robot of the command line watches a camera of 25 pictures a second on this machine,
-and is stopped (SIGSTOP) but for one picture at a time; an otherwise idle core is needed.
-
-    python -m benchmarks.uneven_frames --live --showings 20
+`live`: a robot of the command line watches a camera of 25 pictures a second on this machine, and is
+stopped (SIGSTOP) but for one picture at a time; an otherwise idle core is needed.
 """
 
 from __future__ import annotations
 
-import argparse
 import json
 import socket
 import sys
 from bisect import bisect
-from collections import Counter
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
-from functools import cache
+from functools import partial
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
 from signal import SIGCONT, SIGSTOP
@@ -42,19 +36,22 @@ from app.recognition import PoseSequence, Recording, record
 from app.recognition.recording.recording import LONGER_HELD, find_missable
 from app.recognition.recording.salute import HOLD_SECONDS
 from app.recognition.recording.trimming import SETTING_OUT, Span
+from app.resources import samples_dir
 from app.robot.active_language import ActiveLanguage
 from app.robot.events import TakeRecognized
 from app.robot.listeners.language_listener import create_listener
-from languages.build import FOLDER
+from benchmarks.figures import Figure, Measurement, Results, share, table
 
-SHOWN = (
-    ("osg-table-2", "line"),
-    ("osg-table-2", "circle"),
-    ("osg-table-2", "sweep"),
-    ("osg-table-1", "circle"),
-    ("osg-table-1", "wedge"),
-    ("osg-table-1", "three"),
-)
+FOLDER = samples_dir()
+
+SHOWN = {
+    "line": ("osg-table-2", "line"),
+    "circle": ("osg-table-2", "circle"),
+    "sweep": ("osg-table-2", "sweep"),
+    "circle-of-3": ("osg-table-1", "circle"),
+    "wedge-of-3": ("osg-table-1", "wedge"),
+    "three-of-3": ("osg-table-1", "three"),
+}
 """Languages and gestures, each shown by the two test clips of the gesture in turn."""
 
 UNEVEN, EVEN = (3, 4, 5, 6, 8), (4, 5, 6, 8)
@@ -96,17 +93,16 @@ class Read:
     gap: float
 
 
-@cache
-def load_clips(gesture: str) -> tuple[Recording, ...]:
-    """Return the recordings of a gesture's test clips."""
-    return tuple(record(FOLDER / "clips" / f"{gesture}-test-{number}.mp4") for number in (1, 2))
+def find_clips(gesture: str) -> list[Path]:
+    """Return a gesture's test clips."""
+    return [FOLDER / "clips" / f"{gesture}-test-{number}.mp4" for number in (1, 2)]
 
 
 def play(
-    gesture: str, rate: float, *, even: bool, random: np.random.Generator
+    clips: Sequence[Recording], rate: float, *, even: bool, random: np.random.Generator
 ) -> Iterator[tuple[float, PoseSequence, float]]:
     """Yield what is seen of `IN_A_STREAM` showings: when one began, a frame, its salute score."""
-    clips, begun = load_clips(gesture), 0.0
+    begun = 0.0
     for number in range(IN_A_STREAM):
         clip = clips[number % len(clips)]
         held = clip.poses.time[-1] + np.arange(1, int(PAUSE / STEP)) * STEP
@@ -124,7 +120,13 @@ def play(
 
 
 def show(
-    language: ActiveLanguage, gesture: str, showings: int, rate: float, *, even: bool, seed: int = 0
+    language: ActiveLanguage,
+    gesture: str,
+    clips: Sequence[Recording],
+    showings: int,
+    rate: float,
+    *,
+    even: bool,
 ) -> Iterator[Read]:
     """Show a gesture to listeners, and yield the takes with a label."""
     gap = 0.0
@@ -137,9 +139,10 @@ def show(
         return ()
 
     for stream in range(showings // IN_A_STREAM):
-        random = np.random.default_rng((seed, stream))
         listener, starts = create_listener(language), list[float]()
-        for begun, pose, salute in play(gesture, rate, even=even, random=random):
+        for begun, pose, salute in play(
+            clips, rate, even=even, random=np.random.default_rng((1, stream))
+        ):
             if begun not in starts:
                 starts.append(begun)
             with patch("app.recognition.recording.segmentation.find_missable", keep_longest):
@@ -150,14 +153,32 @@ def show(
                     yield Read(event.label == gesture, first != last, gap)
 
 
+def measure_gesture(name: str, gesture: str, quick: bool) -> Iterator[Figure]:
+    """Yield right and wrong takes of a gesture's showings, with the rule and without."""
+    language = ActiveLanguage.load(FOLDER / f"{name}.json", "full")
+    clips = [record(each) for each in find_clips(gesture)]
+    showings, uneven = IN_A_STREAM if quick else 480, list[Read]()
+    for even, rate in [(False, each) for each in UNEVEN] + [(True, each) for each in EVEN]:
+        reads = [*show(language, gesture, clips, showings, rate, even=even)]
+        uneven += [] if even else reads
+        for rule, kept in (("", [e for e in reads if e.gap < LIMIT - 1e-9]), ("-without", reads)):
+            steps = f"{'even' if even else 'uneven'}-{rate}"
+            right = sum(each.right for each in kept)
+            yield share(f"{steps}/right{rule}", right, showings)
+            yield share(f"{steps}/wrong{rule}", len(kept) - right, showings)
+    misread = [each.gap for each in uneven if each.between and not each.right]
+    limit = max((each for each in CANDIDATES if each <= min(misread, default=np.inf)), default=0.0)
+    yield Figure("limit", limit, len(misread), unit="")
+
+
 class Camera(ThreadingHTTPServer):
     """An MJPEG camera that shows the test clips of a gesture in turn, in real time."""
 
     def __init__(self, gesture: str) -> None:
         super().__init__(("127.0.0.1", 0), _Stream)
         self.pictures: list[bytes] = []
-        for number in (1, 2):
-            with av.open(str(FOLDER / "clips" / f"{gesture}-test-{number}.mp4")) as clip:
+        for each in find_clips(gesture):
+            with av.open(str(each)) as clip:
                 shown = [
                     cv2.imencode(".jpg", frame.to_ndarray(format="bgr24"))[1].tobytes()
                     for frame in clip.decode(video=0)
@@ -192,13 +213,14 @@ class _Stream(BaseHTTPRequestHandler):
         """Write nothing about a request."""
 
 
-def show_live(language: Path, gesture: str, showings: int, rate: float, seed: int) -> Counter[str]:
-    """Show a gesture to a robot that works for one picture at a time; return what it read."""
-    random = np.random.default_rng(seed)
+def show_live(rate: float, quick: bool) -> Iterator[Figure]:
+    """Show a gesture to a robot that works for one picture at a time, and yield what it read."""
+    name, gesture = SHOWN["line"]
+    random, showings = np.random.default_rng(1), 4 if quick else 10
     with Camera(gesture) as camera:
         Thread(target=camera.serve_forever, daemon=True).start()
         address = f"http://127.0.0.1:{camera.server_port}/"
-        command = [sys.executable, "-m", "app", "robot", "--language", str(language)]
+        command = [sys.executable, "-m", "app", "robot", "--language", f"{FOLDER / name}.json"]
         robot = Popen([*command, "--source", address], stdout=PIPE, stderr=DEVNULL, text=True)
         assert robot.stdout is not None
         for line in robot.stdout:
@@ -214,64 +236,46 @@ def show_live(language: Path, gesture: str, showings: int, rate: float, seed: in
         events = [json.loads(line) for line in robot.stdout]
         robot.wait()
         camera.shutdown()
-    labels = (each["label"] for each in events if each["event"] == "take_recognized")
-    return Counter("right" if each == gesture else f"wrong: {each}" for each in labels)
+    read = [each["label"] == gesture for each in events if each["event"] == "take_recognized"]
+    yield share("right", sum(read), showings)
+    yield share("wrong", len(read) - sum(read), showings)
 
 
-def count(reads: Sequence[Read], limit: float) -> tuple[int, int]:
-    """Return how many right and wrong takes keep their label if gaps from `limit` on take it."""
-    kept = [each.right for each in reads if each.gap < limit - 1e-9]
-    return sum(kept), len(kept) - sum(kept)
+def measurements(folder: Path, methods: tuple[str, ...]) -> Iterator[Measurement]:
+    """Yield the showings of each gesture, and those to a whole robot at some rates."""
+    for key, shown in SHOWN.items():
+        yield Measurement(
+            f"uneven/{key}",
+            partial(measure_gesture, *shown),
+            "two rendered clips",
+            "480 showings a rate, at exponential and at even steps",
+            measures=("app",),
+        )
+    for rate in (4, 8):
+        yield Measurement(
+            f"uneven/live-{rate}",
+            partial(show_live, rate),
+            "two rendered clips",
+            "a robot that is stopped but for one picture at a time, ten showings of `line`",
+            measures=("app",),
+            alone=True,
+        )
 
 
-def choose(reads: Sequence[Read]) -> float:
-    """Return the largest candidate at which no wrong take between two showings keeps its label."""
-    between = [each for each in reads if each.between]
-    return max((each for each in CANDIDATES if not count(between, each)[1]), default=0.0)
-
-
-def main() -> None:
-    """Print a table of the rates for each gesture, and the choice with each gesture left out."""
-    parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
-    parser.add_argument("--showings", type=int, default=120, help="for each gesture and rate")
-    parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--languages", type=Path, default=FOLDER, help="folder of the languages")
-    parser.add_argument("--live", action="store_true", help="a whole robot that is stopped")
-    wanted = parser.parse_args()
-    if wanted.live:
-        name, gesture = SHOWN[0]
-        for rate in UNEVEN:
-            file = wanted.languages / f"{name}.json"
-            found = show_live(file, gesture, wanted.showings, rate, wanted.seed)
-            print(f"live  {rate} a second, {wanted.showings} showings: {dict(found)}", flush=True)
-        return
-    uneven: dict[tuple[str, str], list[Read]] = {each: [] for each in SHOWN}
-    print("steps   rate  language     gesture   right (without the rule)   wrong (without)")
-    for name, gesture in SHOWN:
-        language = ActiveLanguage.load(wanted.languages / f"{name}.json", "full")
-        for even, rate in [(False, each) for each in UNEVEN] + [(True, each) for each in EVEN]:
-            reads = list(
-                show(language, gesture, wanted.showings, rate, even=even, seed=wanted.seed)
+def write_uneven(results: Results) -> str:
+    """Write right and wrong showings at uneven steps: in brackets without the rule."""
+    rows = []
+    for rate in UNEVEN:
+        cells = [f"{rate}"]
+        for key in SHOWN:
+            right, all_right, wrong, all_wrong = (
+                results.show(f"uneven/{key}", f"uneven-{rate}/{each}", "hits")
+                for each in ("right", "right-without", "wrong", "wrong-without")
             )
-            right, wrong = count(reads, LIMIT)
-            all_right, all_wrong = count(reads, np.inf)
-            print(
-                f"{'even' if even else 'uneven':6}  {rate:4}  {name:11}  {gesture:8}"
-                f"  {right:5} ({all_right})  {wrong:5} ({all_wrong})",
-                flush=True,
-            )
-            if not even:
-                uneven[name, gesture] += reads
-    print(
-        f"\nlongest gap: {LIMIT:.2f} s here; chosen on the other gestures, read on the one left out"
-    )
-    for left in sorted({gesture for _, gesture in SHOWN}):
-        others = [read for key, reads in uneven.items() if key[1] != left for read in reads]
-        own = [read for key, reads in uneven.items() if key[1] == left for read in reads]
-        limit = choose(others)
-        right, wrong = count(own, limit)
-        print(f"  {left:8}  {limit:.2f} s: {right} right, {wrong} wrong")
+            cells.append(f"{right} ({all_right}), {wrong} ({all_wrong})")
+        rows.append(cells)
+    names = (f"`{key.replace('-of-3', '` of 3')}" + "`" * ("-" not in key) for key in SHOWN)
+    return table(("frames a second", *names), rows)
 
 
-if __name__ == "__main__":
-    main()
+TABLES = {"uneven": write_uneven}

@@ -12,7 +12,7 @@ from app.recognition.poses.frame import FrameLandmarks, Image
 from app.recognition.recording.live_segmentation import LONGEST_TRIGGER
 from app.recognition.recording.segmentation import LONGEST_TAKE
 from app.robot import Frame, Notice, TriggerListener
-from benchmarks.cost.endurance import LoopedClip, allocated_bytes, endure, slope_of
+from benchmarks.cost.robot import Lap, LoopedClip, allocated_bytes, endure, fit_slope
 from tests.api.recordings import FRAME_SIZE, RATE, recording_of
 from tests.recognition.damaged_clips import write_clip
 from tests.recognition.recording.test_live_segmentation import frames_of
@@ -62,12 +62,12 @@ def test_every_loop_says_the_same_in_the_same_memory() -> None:
     laps = endure(stream, stream, listener, water="off")
     assert len(laps) == round(60 * MINUTES / stream.period)
     for lap in laps:
-        assert [answer.label for answer in lap.answers] == ["circle", "line"]
-        for one, first in zip(lap.answers, laps[0].answers, strict=True):
-            assert one.is_same(first)
+        assert [label for label, *_ in lap.answers] == ["circle", "line"]
+        assert lap.is_same(laps[0])
+        for (*_, confidence), (*_, first) in zip(lap.answers, laps[0].answers, strict=True):
             # Rounding of later times moves the edge of a stroke by one frame, which changes a
             # confidence from 1.00 to 0.94.
-            assert one.confidence == pytest.approx(first.confidence, abs=0.1)
+            assert confidence == pytest.approx(first, abs=0.1)
         # Plus the frame whose stamp ends the longest take.
         assert lap.remembered <= (LONGEST_TAKE + LONGEST_TRIGGER) * RATE + 1
     settled = laps[len(laps) // 2 :]
@@ -77,17 +77,25 @@ def test_every_loop_says_the_same_in_the_same_memory() -> None:
 @pytest.mark.slow
 def test_a_looped_clip_is_one_stream(tmp_path: Path) -> None:
     clip = write_clip(tmp_path / "dive.mp4", frames=10)
-    source = LoopedClip(clip, 1.0, every=2)
+    source = LoopedClip(clip, 1.0, rate=12.5)
     times = [given.time for given in source if isinstance(given, Frame)]
     assert source.period == pytest.approx(0.4)
     assert source.loops == 3
     assert times == pytest.approx(np.arange(15) * 0.08)
 
 
+def test_loops_that_say_something_else_or_later_differ() -> None:
+    said = Lap(answers=[("circle", 1.0, 2.0, 0.9)])
+    assert said.is_same(Lap(answers=[("circle", 1.01, 2.0, 0.7)]))
+    assert not said.is_same(Lap())
+    for label, end in (("line", 2.0), ("circle", 2.1)):
+        assert not said.is_same(Lap(answers=[(label, 1.0, end, 0.9)]))
+
+
 def test_the_slope_is_that_of_the_line_through_the_laps() -> None:
-    slope, half = slope_of([1000 + 300 * number for number in range(10)], period=30.0)
-    assert slope == pytest.approx(600)
-    assert half == pytest.approx(0, abs=1e-6)
+    slope = fit_slope("memory", [1000 + 300 * number for number in range(10)], step=0.5)
+    assert slope.value == pytest.approx(600)
+    assert slope.interval == pytest.approx((600, 600), abs=1e-6)
 
 
 def test_what_is_allocated_is_counted() -> None:
