@@ -53,6 +53,7 @@ from benchmarks.figures import (
 TOPICS = (
     "benchmarks.accuracy.comparison",
     "benchmarks.accuracy.people",
+    "benchmarks.accuracy.reliability",
     "benchmarks.accuracy.views",
     "benchmarks.accuracy.samples",
     "benchmarks.accuracy.spotting",

@@ -31,11 +31,11 @@ from app.recognition.triggers.trigger import NO_TRIGGER, Trigger
 CONFIDENT = 0.8
 """Least confidence of a spotted gesture; below, another gesture is about as near."""
 
-FAMILIAR = 0.97
+FAMILIAR = 0.93
 """Least confidence that a stretch is this gesture rather than none.
 
-Confidence is calibrated for takes of which half are gestures; few stretches of a stream are.
-Pointing into the distance is a *line* with 0.96."""
+Confidence is calibrated for takes of which half are gestures; few stretches of a stream are
+(`benchmarks/studies/spotting.md`)."""
 
 FASTER, SLOWER = 0.4, 2.2
 """Shortest and longest duration of a gesture relative to its demonstration: two people's takes

@@ -6,7 +6,7 @@ is right: for every set at the value that is best on the sets of other people, a
 shipped one. `rejection` prints, for languages of half of a set's classes, the scores of right takes
 by others, of takes of the other classes (near), and of movements of people who do not sign (far,
 for whole bodies); how many of each the shipped limit rejects or accepts, and the one chosen without
-the set; and the confidence's coefficients fitted without it.
+the set.
 
     python -m benchmarks.accuracy.constants ../shared/data --subject voters
     python -m benchmarks.accuracy.constants ../shared/data --subject rejection
@@ -28,7 +28,7 @@ from app.evaluation.share import Share
 from app.recognition import Gesture, Language, PoseError, Recognizer
 from app.recognition.decision import fusion
 from app.recognition.decision.fused_vote import FusedVote
-from app.recognition.decision.outcome import LIMIT_OF_ARMS, LIMIT_OF_HANDS, SCORE_FLOOR
+from app.recognition.decision.outcome import LIMIT_OF_ARMS, LIMIT_OF_HANDS
 from app.recognition.features import motion, traversals
 from app.recognition.gestures.demonstration import condense
 from app.recognition.poses.sequence import FloatArray
@@ -68,9 +68,6 @@ LIMITS: Final = tuple(percent / 100 for percent in range(20, 101, 2))
 
 FAR_ACCEPTED: Final = 0.05
 """Largest share of far movements that a limit may accept on each set from which it is chosen."""
-
-NEWTON_ROUNDS = 30
-"""Steps of Newton's method; logistic regression converges in about ten."""
 
 
 def others_or_own(chosen: Draw) -> npt.NDArray[np.intp]:
@@ -202,16 +199,14 @@ class Decided:
         The limit of usual languages of this kind, `LIMIT_OF_ARMS` or `LIMIT_OF_HANDS`.
     kind
         ``(Q,)``: ``right``, ``wrong``, ``near`` where the class is not in the language, or ``far``.
-    novelty, nearest, second
-        ``(Q,)`` of the nearest gesture, and the two smallest scores.
+    novelty
+        ``(Q,)`` of the nearest gesture.
 
     """
 
     shipped: float
     kind: npt.NDArray[np.str_]
     novelty: FloatArray
-    nearest: FloatArray
-    second: FloatArray
 
     def scores(self, kind: str) -> FloatArray:
         """Return the novelties of a kind times `shipped`: the scores in usual languages."""
@@ -222,17 +217,11 @@ class Decided:
         scores = self.scores(kind)
         return Share(int((scores <= limit).sum()), len(scores))
 
-    def regressors(self) -> FloatArray:
-        """Return ``(Q, 3)``: 1, and the logarithms of novelty and of the share of the scores."""
-        second = np.where(np.isfinite(self.second), self.second, 1.0) + SCORE_FLOOR
-        share = np.log((self.nearest + SCORE_FLOOR) / second)
-        return np.stack([np.ones_like(share), np.log(self.novelty + SCORE_FLOOR), share], axis=1)
-
 
 def decide(recorded: RecordedSet, far: RecordedSet, given: argparse.Namespace) -> Decided:
     """Recognise takes of all classes, and far movements, with languages of half of the classes."""
     generator = np.random.default_rng(given.seed)
-    found: list[tuple[str, float, float, float]] = []
+    found: list[tuple[str, float]] = []
     shipped = LIMIT_OF_HANDS
     for chosen in draws(recorded, given.draws, given.queries, given.seed):
         labels = {index: str(recorded.labels[index]) for index in chosen.templates}
@@ -251,28 +240,9 @@ def decide(recorded: RecordedSet, far: RecordedSet, given: argparse.Namespace) -
             if label not in kept:
                 kind = "near" if label else "far"
             at = result.gestures.index(result.nearest)
-            found.append((kind, float(result.novelty[at]), *np.sort(result.scores)[:2].tolist()))
-    kinds, novelties, nearest_scores, seconds = zip(*found, strict=True)
-    return Decided(shipped, np.array(kinds), *map(np.array, (novelties, nearest_scores, seconds)))
-
-
-def fit_confidence(data: Sequence[Decided]) -> FloatArray:
-    """Fit the confidence's coefficients ``(3,)``; near takes weigh one half of each set."""
-    regressors, right, weights = [], [], []
-    for each in data:
-        asked = each.kind != "far"
-        near = (each.kind == "near")[asked]
-        regressors.append(each.regressors()[asked])
-        right.append((each.kind == "right")[asked].astype(float))
-        weights.append(np.where(near, 0.5 / near.sum(), 0.5 / (~near).sum()) / len(data))
-    known, correct, weight = map(np.concatenate, (regressors, right, weights))
-    coefficients = np.zeros(3)
-    for _ in range(NEWTON_ROUNDS):
-        chance = 1.0 / (1.0 + np.exp(-known @ coefficients))
-        gradient = known.T @ (weight * (correct - chance))
-        curvature = (known.T * (weight * chance * (1 - chance))) @ known
-        coefficients += np.linalg.solve(curvature, gradient)
-    return coefficients
+            found.append((kind, float(result.novelty[at])))
+    kinds, novelties = zip(*found, strict=True)
+    return Decided(shipped, np.array(kinds), np.array(novelties))
 
 
 def choose_limit(data: Sequence[Decided]) -> float:
@@ -306,14 +276,11 @@ def print_rejection(data: Mapping[str, Decided]) -> None:
                 f" near accepted {each.accepted('near', limit)},"
                 f" far accepted {each.accepted('far', limit)}"
             )
-        if others:
-            shown.append(f"confidence {fit_confidence(others).round(2).tolist()}")
         counts = "/".join(str(int((each.kind == kind).sum())) for kind in ("right", "near", "far"))
         print(f"{name:16} n {counts}  " + "  ".join(shown), flush=True)
     for of_kind in (LIMIT_OF_ARMS, LIMIT_OF_HANDS):
         if alike := [each for each in data.values() if each.shipped == of_kind]:
             print(f"limit of all sets {choose_limit(alike):.2f}, shipped {of_kind}")
-    print(f"confidence of all sets {fit_confidence([*data.values()]).round(2).tolist()}")
 
 
 def _quantiles(scores: FloatArray, *percent: int) -> str:

@@ -40,8 +40,8 @@ LOST: Final = timedelta(minutes=5)
 """Time after which a take whose clip is not there will have none: storing it takes seconds."""
 
 DOUBT: Final = 0.25
-"""Confidence below which a take is read with doubt; at 0.5 ten to thirty percent more of the right
-takes would be asked about, see `benchmarks.accuracy.people`."""
+"""Confidence below which a take is read with doubt; at 0.5, 4 to 15 points more of the right takes
+would be asked about, see `benchmarks.accuracy.people`."""
 
 FEW_BODIES: Final = 0.2
 """Share of the frames with a body below which nobody is taken to be in a clip: in pictures without

@@ -366,16 +366,14 @@ class FusedVote:
         opinion = int(nearest_by_voter[_OPINION]) if _OPINION in able else None
         found = find_answer(scores, novelty, opinion)
         answer = [self._labels[index] for index in found]
-        confidence = estimate_confidence(
-            float(novelty[winner]),
-            float(scores[winner]),
-            float(np.sort(scores)[1]) if len(scores) > 1 else np.inf,
-        )
+        second = float(np.sort(scores)[1]) if len(scores) > 1 else np.inf
+        novel = float(novelty[winner])
+        confidence = estimate_confidence(novel, float(scores[winner]), second)
         return Recognition(
             label=answer[0] if len(answer) == 1 else None,
             pair=(answer[0], answer[1]) if len(answer) == 2 else None,
             nearest=self._labels[winner],
-            confidence=bound_confidence(confidence, len(answer)),
+            confidence=bound_confidence(confidence, len(answer), novel),
             profile="full",
             voters=compared.voters,
             gestures=self._labels,

@@ -34,7 +34,7 @@ from typing import Final
 import numpy as np
 import numpy.typing as npt
 
-from app.recognition.decision.outcome import SCORE_FLOOR, find_answer
+from app.recognition.decision.outcome import find_answer
 from app.recognition.decision.references import References
 from app.recognition.decision.result import ScoreTable
 from app.recognition.poses.sequence import FloatArray
@@ -112,6 +112,10 @@ OPINION_EXPONENT: Final = 0.2
 """Exponent of the second opinion's ratios, where the score's own ratios have 1; also its weight
 beside that of all other voters (`benchmarks/studies/rejection.md`)."""
 
+DISTANCE_FLOOR: Final = 0.02
+"""Added to the second opinion's distances before their ratio: below the distance of two takes by
+one careful person."""
+
 ORDER_RATIO: Final = 1.05
 """Largest ratio of a score to the smallest one at which the second opinion may make it the nearest.
 """
@@ -146,7 +150,7 @@ def add_second_opinion(table: ScoreTable, factor: float) -> ScoreTable:
     if not factor or known.sum() < 2 or not np.isfinite(opinion[known]).all():
         silent = np.arange(len(table.distances))[:, None] == row
         return replace(table, distances=np.where(silent, np.inf, table.distances))
-    ratios = (opinion[known] + SCORE_FLOOR) / (opinion[known].min() + SCORE_FLOOR)
+    ratios = (opinion[known] + DISTANCE_FLOOR) / (opinion[known].min() + DISTANCE_FLOOR)
     apart = scores[known] * ratios ** (OPINION_EXPONENT * factor)
     near = scores[known] <= ORDER_RATIO * scores[known].min()
     apart[~near] = np.maximum(apart[~near], ORDER_RATIO * apart[near].min())

@@ -11,8 +11,9 @@ diver is asked (`find_answer`).
 
 Confidence: the probability that the label of a take is right.
 
-Profile ``full`` estimates it from the novelty of the nearest gesture and from how much farther the
-second one is. Profile ``paper`` has the share of votes in its place (`majority_vote`).
+Profile ``full`` estimates it from the novelty and the score of the nearest gesture, and from how
+much farther the second one is. Profile ``paper`` has the share of votes in its place
+(`majority_vote`).
 """
 
 from __future__ import annotations
@@ -47,10 +48,6 @@ MOST_REFUSED: Final = 0.05
 
 MOST_REFUSED_AT_ALL: Final = 0.5
 """Largest such share: beyond it a gesture is read once in two takes."""
-
-SCORE_FLOOR: Final = 0.02
-"""Added to scores and novelties before the logarithm: below that of two takes by one careful
-person."""
 
 ASK_RATIO: Final = 1.165
 """Largest ratio of a gesture's score to the nearest one's at which the take may be either
@@ -182,30 +179,20 @@ def find_answer(
     return alike if len(alike) > 2 else close[:2]
 
 
-CONFIDENCE_AT_ONE = -2.2
-CONFIDENCE_PER_NOVELTY = -2.6
-CONFIDENCE_PER_SHARE = -2.9
-"""Coefficients of `estimate_confidence`, fitted on thirteen sets, in languages of half the classes.
-Without any one of the sets they differ by at most 0.6 (`benchmarks/studies/cutting.md`)."""
+CONFIDENCE_AT_ZERO = 5.4
+CONFIDENCE_PER_DISTANCE = -2.9
+"""Coefficients of `estimate_confidence`, by `python -m benchmarks FOLDER --only confidence`; how
+they differ without a set, and what else was tried: `benchmarks/studies/people.md`."""
 
 SURE = 0.2
-"""Least confidence of a take with a label, and largest of one that is asked back."""
-
-TIE_EXPONENT = 9.0
-"""Exponent of the probability that the nearest of two gestures is meant: a logistic fit to takes of
-six recorded sets, 6 to 15 on each. The probability is 0.84 with a runner-up 1.2 times as far, and
-0.97 with one 1.5 times as far."""
+"""Least confidence of a take with a label, and largest of one that lies between gestures."""
 
 
-def estimate_confidence(novelty: float, nearest: float, second: float) -> float:
-    """Estimate the probability that the nearest gesture is the one meant.
+def sum_distances(novelty: float, nearest: float, second: float) -> float:
+    """Return the sum of three distances of the nearest gesture, each relative to another one.
 
-    ``1 / (1 + exp(-(b0 + b1 ln n + b2 ln(s / t))))`` for the novelty n and the scores s of the
-    nearest and t of the second gesture, 0.02 added to each: novelty separates gestures from
-    out-of-vocabulary movements, the ratio separates the two gestures. The coefficients are a
-    logistic regression on other people's recordings, half of them out-of-vocabulary; the
-    reliability table is in `docs/results.md`. The result is at most ``1 / (1 + (s / t)^9)``: of two
-    equally near gestures, each has probability 0.5, however near they are.
+    Novelty is relative to the limit, the score to the usual distance between two gestures, and the
+    ratio of the scores to the second gesture.
 
     Parameters
     ----------
@@ -217,18 +204,28 @@ def estimate_confidence(novelty: float, nearest: float, second: float) -> float:
         typical distance 1.
 
     """
-    far = math.log((novelty if math.isfinite(novelty) else nearest) + SCORE_FLOOR)
-    here = math.log(nearest + SCORE_FLOOR)
-    there = math.log((second if math.isfinite(second) else 1.0) + SCORE_FLOOR)
-    odds = CONFIDENCE_AT_ONE + CONFIDENCE_PER_NOVELTY * far + CONFIDENCE_PER_SHARE * (here - there)
-    # Both exponents are at most 700, just below the overflow of a double.
-    meant = 1.0 / (1.0 + math.exp(min(-odds, 700.0)))
-    this_one = 1.0 / (1.0 + math.exp(min(TIE_EXPONENT * (here - there), 700.0)))
-    return min(meant, this_one)
+    far = novelty if math.isfinite(novelty) else nearest
+    other = second if math.isfinite(second) else 1.0
+    return far + nearest + (nearest / other if other else 1.0)
 
 
-def bound_confidence(confidence: float, answers: int) -> float:
-    """Return a confidence of at least `SURE` with one answer, and of at most `SURE` with two."""
+def estimate_confidence(novelty: float, nearest: float, second: float) -> float:
+    """Estimate the probability that the nearest gesture is the one meant.
+
+    ``1 / (1 + exp(-(b0 + b1 d)))`` for the sum d of `sum_distances`, whose parameters it has. The
+    coefficients are a logistic regression on recorded takes, half of them out-of-vocabulary; the
+    reliability table is in `docs/results.md`.
+    """
+    odds = CONFIDENCE_AT_ZERO + CONFIDENCE_PER_DISTANCE * sum_distances(novelty, nearest, second)
+    # The exponent is at most 700, just below the overflow of a double.
+    return 1.0 / (1.0 + math.exp(min(-odds, 700.0)))
+
+
+def bound_confidence(confidence: float, answers: int, novelty: float) -> float:
+    """Return a confidence of at least `SURE` with one answer, of at most `SURE` between several.
+
+    Beyond the limit it stays as it is.
+    """
     if answers == 1:
         return max(SURE, confidence)
-    return min(SURE, confidence) if answers == 2 else confidence
+    return confidence if is_rejected(novelty) else min(SURE, confidence)

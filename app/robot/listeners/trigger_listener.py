@@ -16,10 +16,9 @@ from app.robot.events import Event, StateChanged, TakeRecognized, TakeRejected
 from app.robot.listeners.stream_order import StreamOrder
 from app.robot.take_result import judge_take, reject_take
 
-GAP_CONFIDENCE: Final = 0.9
+GAP_CONFIDENCE: Final = 0.85
 """Confidence asked for in a gap between two takes, from which it is recognised as a gesture. Fewer
-than one salute in ten is missed, so that a gap is seldom a take. The 31 gaps of
-`trigger.MOST_HANGING` had 0.31 to 0.66."""
+than one salute in ten is missed, so that a gap is seldom a take."""
 
 
 def explain_unclosed(trigger: Trigger) -> str:

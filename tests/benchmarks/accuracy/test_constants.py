@@ -3,12 +3,10 @@
 import numpy as np
 import pytest
 
-from app.recognition.decision.outcome import SCORE_FLOOR
 from benchmarks.accuracy.constants import (
     FAR_ACCEPTED,
     Decided,
     choose_limit,
-    fit_confidence,
     without_people_of,
 )
 
@@ -21,7 +19,7 @@ def decided(right: float, near: float, far: float | None, seed: int) -> Decided:
     means = {"right": right, "near": near} | ({} if far is None else {"far": far})
     kind = np.repeat([*means], TAKES)
     scores = generator.normal([means[each] for each in kind], 0.1).clip(0.01)
-    return Decided(0.8, kind, scores / 0.8, scores, scores + 0.2)
+    return Decided(0.8, kind, scores / 0.8)
 
 
 def test_a_limit_accepts_few_far_movements_of_every_set() -> None:
@@ -41,17 +39,3 @@ def test_sets_of_the_same_people_are_left_out_together() -> None:
     assert without_people_of(names, "digits") == names[2:]
     assert without_people_of(names, "utd_other") == ["digits", "carried_letters", *names[2::3]]
     assert "natops" not in without_people_of(names, "natops")
-
-
-def test_the_confidence_that_takes_were_drawn_by_is_found_again() -> None:
-    truth = np.array([0.5, -2.0, -1.5])
-    generator = np.random.default_rng(3)
-    nearest, ratio = generator.uniform(0.05, 1.5, TAKES * 5), generator.uniform(1, 3, TAKES * 5)
-    second = nearest * ratio
-    share = np.log((nearest + SCORE_FLOOR) / (second + SCORE_FLOOR))
-    odds = truth @ np.stack([np.ones_like(share), np.log(nearest + SCORE_FLOOR), share])
-    right = generator.random(len(share)) < 1 / (1 + np.exp(-odds))
-    # What is not right is near here; that it weighs one half changes the intercept alone.
-    kind = np.where(right, "right", "near")
-    found = fit_confidence([Decided(1.0, kind, nearest, nearest, second)])
-    assert found[1:] == pytest.approx(truth[1:], abs=0.3)

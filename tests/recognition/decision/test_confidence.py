@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from app.recognition.decision.outcome import estimate_confidence
+from app.recognition.decision.outcome import SURE, bound_confidence, estimate_confidence
 
 
 def test_confidence_falls_with_novelty_and_with_a_second_gesture_near() -> None:
@@ -15,8 +15,12 @@ def test_confidence_falls_with_novelty_and_with_a_second_gesture_near() -> None:
     assert 0.0 <= estimate_confidence(1e300, 1e300, 1e300) < 1e-9
 
 
-def test_of_two_gestures_equally_near_each_has_half_the_confidence_at_most() -> None:
-    assert all(estimate_confidence(near, near, near) <= 0.5 for near in (0.0, 0.01, 0.1, 1.0))
+def test_a_take_between_gestures_is_less_sure_than_any_answer_however_near_they_are() -> None:
+    near = estimate_confidence(0.0, 0.0, 0.0)
+    assert bound_confidence(near, 2, novelty=0.0) == SURE
+    assert bound_confidence(near, 0, novelty=0.0) == SURE
+    assert bound_confidence(0.01, 1, novelty=0.9) == SURE
+    assert bound_confidence(0.4, 0, novelty=1.1) == 0.4
 
 
 def test_a_gesture_without_thresholds_is_judged_by_its_score() -> None:
