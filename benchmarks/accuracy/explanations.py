@@ -155,7 +155,8 @@ def measure_faults(trajectories: Path, quick: bool) -> Iterator[Figure]:
                     found[fault][cause] += 1
     for fault, causes in found.items():
         number = causes.total()
-        yield share(f"{fault}/named", causes[fault], number)
+        if fault != ANOTHER:
+            yield share(f"{fault}/named", causes[fault], number)
         false = number - causes[fault] - causes[""] - causes[NEAR]
         yield share(f"{fault}/false", false, number)
 

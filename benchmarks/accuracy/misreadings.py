@@ -240,7 +240,7 @@ WORDS: Final = {
 def write_claims(results: Results) -> str:
     """Write how often a claim is true, false, or not made."""
     parts = ("people", "people-new", "rendered", "hard")
-    head = ["the sentence, hits of n (%)"]
+    head = ["the sentence"]
     for part in parts:
         head.append(f"{part}, n {results.show(f'misreadings/{part}', 'named', 'n?')}")
     rows = []
