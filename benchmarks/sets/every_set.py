@@ -11,7 +11,7 @@ import numpy as np
 from benchmarks.figures import Figure, Measurement
 from benchmarks.sets.drawn_sets import SETS as DRAWN
 from benchmarks.sets.drawn_sets import drawn_sets
-from benchmarks.sets.held_signs import HAND_LETTERS, LETTERS_FILE, hand_letters_set
+from benchmarks.sets.held_signs import HAND_LETTERS, LETTERS_FILE, read_hand_letters
 from benchmarks.sets.recorded_sets import DOMAINS, SETS, RecordedSet, recorded_sets
 from benchmarks.sets.simulated_bodies import CARRIED, carried_sets
 from benchmarks.sets.whole_body_sets import ARM_CLASSES, FILES, whole_body_sets
@@ -34,7 +34,7 @@ def all_sets(folder: Path, names: Sequence[str] | None = None) -> Iterator[Recor
     yield from whole_body_sets(folder, [name for name in wanted if name in ARM_CLASSES])
     yield from carried_sets(folder, [name for name in wanted if name in CARRIED])
     if HAND_LETTERS in wanted:
-        yield hand_letters_set(folder)
+        yield read_hand_letters(folder)
     yield from (each for each in drawn_sets() if each.name in wanted)
 
 
@@ -47,6 +47,11 @@ def find_file(folder: Path, name: str) -> tuple[Path, ...]:
     if name == HAND_LETTERS:
         return (folder / LETTERS_FILE,)
     return (folder / f"{FILES.get(name, name)}.npz",)
+
+
+def find_files(folder: Path, names: Iterable[str]) -> tuple[Path, ...]:
+    """Return the files that hold some sets, each once."""
+    return tuple(dict.fromkeys(file for name in names for file in find_file(folder, name)))
 
 
 def measure_sets(

@@ -59,30 +59,16 @@ def read_held_signs(folder: Path) -> HeldSigns:
     return HeldSigns([_read(each) for each in places], labels, runs)
 
 
-@dataclass(frozen=True)
-class HandLetters:
-    """Takes of the letters of finger alphabets, one of each letter by each signer.
+def read_hand_letters(folder: Path) -> RecordedSet:
+    """Read the takes of the shared letters of `LETTERS_FILE` in a folder, without the `COPY`.
 
-    Attributes
-    ----------
-    takes
-        N pose sequences: a hand, and the wrist as the only landmark of a body.
-    letters, signers
-        ``(N,)`` letter and signer of each.
-
+    A take is a hand, and the wrist as the only landmark of a body; each signer shows each letter
+    once at most.
     """
-
-    takes: list[PoseSequence]
-    letters: npt.NDArray[np.str_]
-    signers: npt.NDArray[np.str_]
-
-
-def read_hand_letters(folder: Path, letters: str = SHARED_LETTERS) -> HandLetters:
-    """Read the takes of some letters of `LETTERS_FILE` in a folder, without the `COPY`."""
     with np.load(folder / LETTERS_FILE, allow_pickle=True) as file:
         content = {name: file[name] for name in ("x", "t", "label", "subject", "frame_size")}
     shown, signers = content["label"].astype(str), content["subject"].astype(str)
-    chosen = np.flatnonzero(np.isin(shown, list(letters)) & (signers != COPY))
+    chosen = np.flatnonzero(np.isin(shown, list(SHARED_LETTERS)) & (signers != COPY))
     takes = [
         make_take(
             content["x"][index].astype(np.float64),
@@ -91,13 +77,7 @@ def read_hand_letters(folder: Path, letters: str = SHARED_LETTERS) -> HandLetter
         )
         for index in chosen.tolist()
     ]
-    return HandLetters(takes, shown[chosen], signers[chosen])
-
-
-def hand_letters_set(folder: Path) -> RecordedSet:
-    """Return the takes of `read_hand_letters` as a set."""
-    read = read_hand_letters(folder)
-    return RecordedSet(HAND_LETTERS, read.takes, read.letters, read.signers)
+    return RecordedSet(HAND_LETTERS, takes, shown[chosen], signers[chosen])
 
 
 def _read(places: npt.NDArray[np.float32]) -> PoseSequence:

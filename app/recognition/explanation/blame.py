@@ -53,8 +53,8 @@ MOST_AGREE: Final = 2 / 3
 strokes the gesture has. With half, one demonstration of 30 is blamed that no reader blames."""
 
 WEIGHT_OF_FAILING: Final = 0.75
-"""Weight of `Evidence.failing`; chosen, as the next two, by `benchmarks.accuracy.blame`, which
-leaves sets out."""
+"""Weight of `Evidence.failing`; chosen, as the next two, by `benchmarks.accuracy.explanations`,
+which leaves sets out."""
 
 WEIGHT_OF_GAIN: Final = 0.4
 """Weight of `Evidence.gain`."""

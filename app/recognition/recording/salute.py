@@ -55,7 +55,7 @@ def score_condition(excess: float) -> float:
 
 
 # All thresholds: chosen on rendered hands with known pose, checked on photographs and drawings
-# (`benchmarks/accuracy/salute.py`). Lengths are in palms, wrist to middle knuckle.
+# (`benchmarks/accuracy/pictures.py`). Lengths are in palms, wrist to middle knuckle.
 STRAIGHT = Condition(0.87, 0.2)
 """Distance knuckle to tip over the finger's length along its joints; 1 is straight."""
 

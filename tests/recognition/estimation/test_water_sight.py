@@ -20,7 +20,7 @@ from app.recognition.estimation.water import WaterSight, is_murky
 from app.recognition.poses.frame import FrameLandmarks, Image
 from app.recognition.poses.landmarks import POSE_LANDMARKS
 from app.recognition.recording.video import VideoFrame
-from benchmarks.accuracy.underwater import degrade
+from benchmarks.accuracy.murky_clips import degrade
 from tests.recognition.estimation.clip_frames import clip_frames
 
 
@@ -40,7 +40,7 @@ def assert_equal(one: FrameLandmarks, other: FrameLandmarks) -> None:
 
 def murky_with_lamp(image: Image) -> Image:
     """Return a frame in murk with a lamp at its edge, so that its grey levels look clear."""
-    (murky,) = degrade([image], 0.75, far=False)
+    (murky,) = degrade([image], 0.75)
     murky[: len(murky) // 12] = 255
     return murky
 
@@ -65,7 +65,7 @@ def test_clear_frames_are_seen_as_they_are(
 def test_in_murk_auto_finds_hands_that_nothing_is_found_of_as_filmed(
     estimator: OnnxPoseEstimator, frames: tuple[VideoFrame, ...]
 ) -> None:
-    (image,) = degrade([frames[0].image], 0.75, far=False)
+    (image,) = degrade([frames[0].image], 0.75)
     murky = (VideoFrame(index=0, time=0.0, image=image),)
     (as_filmed,) = look(estimator, murky, "off")
     (found,) = look(estimator, murky, "auto")

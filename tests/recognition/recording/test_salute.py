@@ -17,7 +17,7 @@ from app.recognition.recording.salute import (
     best_salute,
     salute_score,
 )
-from benchmarks.accuracy.salute import check_published_rule
+from benchmarks.accuracy.pictures import check_published_rule
 from tests.recognition.parametric_hand import (
     SHAPES,
     Finger,

@@ -20,7 +20,7 @@ from app.recognition.estimation.landmark_models.onnx_session import ModelSession
 from app.recognition.models.storage import model_path
 from app.recognition.poses.frame import Image
 from app.recognition.poses.landmarks import POSE_LANDMARKS
-from benchmarks.accuracy.underwater import degrade
+from benchmarks.accuracy.murky_clips import degrade
 from tests.recognition.estimation.clip_frames import clip_frames
 
 NOSE, HIP = POSE_LANDMARKS.index("nose"), POSE_LANDMARKS.index("left_hip")
@@ -60,7 +60,7 @@ def test_a_diver_who_is_turned_is_found(
 
 
 def test_a_diver_in_murk_is_found_as_filmed(estimator: OnnxPoseEstimator, diver: Image) -> None:
-    (murky,) = degrade([diver], 0.8, far=False)
+    (murky,) = degrade([diver], 0.8)
     clear, dim = estimator.examine(diver).body, estimator.examine(murky).body
     assert clear is not None
     assert dim is not None

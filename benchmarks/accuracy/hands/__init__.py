@@ -1,1 +1,0 @@
-"""Hand shapes: how often held ones, moving ones and sequences are recognised."""

@@ -1,1 +1,0 @@
-"""Published sets of divers' signs, read in the layout in which their authors give them."""
