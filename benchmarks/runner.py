@@ -214,7 +214,7 @@ def choose(known: Iterable[Measurement], only: Sequence[str]) -> Iterator[Measur
         if only and not any(_is_part(each.name, name) for name in only):
             continue
         if missing := each.missing():
-            print(f"{each.name} is left out: {', '.join(map(str, missing))} is not there.")
+            print(f"{each.name} is left out: {', '.join(missing)} is not there.")
         else:
             yield each
 

@@ -19,7 +19,7 @@ from __future__ import annotations
 
 from collections import Counter, defaultdict
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import partial
 from itertools import chain
 from pathlib import Path
@@ -31,7 +31,7 @@ import numpy as np
 from app.recognition import OsgError, PoseSequence
 from app.recognition.gestures.profile import PROFILES
 from benchmarks.figures import Figure, Measurement, Results, share, table
-from benchmarks.methods import METHODS, find_method
+from benchmarks.methods import METHODS, PACKAGES, TRAINED, find_method
 from benchmarks.methods.base import Demonstration, Method, Prediction
 from benchmarks.sets.every_set import is_of_bodies, measure_sets
 from benchmarks.sets.one_shot_draws import draw_several, draws
@@ -40,6 +40,11 @@ from benchmarks.sets.whole_body_sets import ARM_CLASSES, far_movements
 
 YARDSTICK = "full"
 PEOPLE = (1, 3)
+
+DRAWS = 20
+DRAWS_OF_TRAINED = 4
+"""Languages a set: the trained methods, which take long, see the first of them."""
+
 OF_THE_LANGUAGE = ("right", "asked", "refused", "wrong")
 OUT_OF_VOCABULARY = ("answered", "asked", "refused")
 LIMITS = (0.5, 0.7, 0.8, 0.9)
@@ -52,6 +57,10 @@ NAMES = {
     "dtw": "plain DTW",
     "jackknife": "Jackknife",
     "point-cloud": "$P",
+    "hmm": "HMM",
+    "svm": "SVM",
+    "crf": "CRF",
+    "bi-lstm": "Bi-LSTM",
 }
 """Methods as the table calls them."""
 
@@ -186,10 +195,10 @@ def find_methods(names: Iterable[str]) -> dict[str, Callable[[], Method]]:
 
 
 def compare_on_set(
-    methods: tuple[str, ...], trajectories: Path, recorded: RecordedSet, quick: bool
+    methods: tuple[str, ...], most: int, trajectories: Path, recorded: RecordedSet, quick: bool
 ) -> Iterator[Figure]:
     """Draw languages of a set, and yield what every method says of its takes."""
-    count, queries = (3, 15) if quick else (20, 30)
+    count, queries = (min(most, 3), 15) if quick else (most, 30)
     far = far_movements(trajectories)
     return compare(methods, recorded.name, [*draw_languages(recorded, far, count, queries, 1)])
 
@@ -197,7 +206,7 @@ def compare_on_set(
 def compare(methods: tuple[str, ...], data: str, languages: Sequence[Language]) -> Iterator[Figure]:
     """Yield what every method says of takes, and what it costs."""
     found: dict[str, Outcomes] = {}
-    for name, make in find_methods((YARDSTICK, *methods) if methods else METHODS).items():
+    for name, make in find_methods(methods).items():
         try:
             found[name] = measure(make, languages)
         except MethodError as error:
@@ -207,7 +216,8 @@ def compare(methods: tuple[str, ...], data: str, languages: Sequence[Language]) 
         method = name.replace(" ", "-")
         for relation, nearest in outcomes.nearest.items():
             yield share(f"{method}/{relation}", nearest[True], nearest.total())
-        if name in (*PROFILES, *methods):  # the others answer each take as a gesture
+        # The other methods here answer each take as a gesture.
+        if name not in (*METHODS, *TRAINED) or name in PROFILES:
             yield from count_answers(method, outcomes)
         for cost, mine, theirs in (
             ("fit", outcomes.fitting, first.fitting),
@@ -231,32 +241,48 @@ def count_answers(method: str, outcomes: Outcomes) -> Iterator[Figure]:
 
 
 def measurements(folder: Path, methods: tuple[str, ...]) -> Iterator[Measurement]:
-    """Yield the comparison on every set."""
-    trajectories = folder / "trajectories"
-    yield from measure_sets(
-        "comparison",
-        folder,
-        (*SETS, *ARM_CLASSES),
-        partial(compare_on_set, methods, trajectories),
-        "20 languages of all classes, 30 takes each by the same person, by others, of classes that "
-        "the language lacks, and of people who do not sign; one demonstration by one or by three",
-        trajectories / "kindergator.npz",
+    """Yield the comparison on every set, and that with the trained methods in some of its draws."""
+    protocol = (
+        "{} languages of all classes, 30 takes each by the same person, by others, of classes that "
+        "the language lacks, and of people who do not sign; one demonstration by one or by three"
     )
+    trajectories = folder / "trajectories"
+    for topic, compared, names, count in (
+        ("comparison", (YARDSTICK, *methods) if methods else METHODS, (*SETS, *ARM_CLASSES), DRAWS),
+        ("trained", (YARDSTICK, *TRAINED), SETS, DRAWS_OF_TRAINED),
+    ):
+        for each in measure_sets(
+            topic,
+            folder,
+            names,
+            partial(compare_on_set, compared, count, trajectories),
+            protocol.format(count),
+            trajectories / "kindergator.npz",
+        ):
+            yield replace(each, packages=PACKAGES) if topic == "trained" else each
 
 
 def write_nearest(results: Results) -> str:
     """Write the share of takes whose nearest gesture is right: a row a set, a column a method."""
     sets = results.names("comparison")
-    methods = dict.fromkeys(
-        figure.partition("/")[0]
-        for name in sets
-        for figure in results.measured[f"comparison/{name}"].figures
-    )
+    methods = {
+        figure.partition("/")[0]: topic
+        for topic in ("trained", "comparison")
+        for name in results.names(topic)
+        for figure in results.measured[f"{topic}/{name}"].figures
+    }
+    order = sorted(methods, key=lambda each: (methods[each], each != YARDSTICK))
     rows = [
-        [name, *(_show(results, name, [f"{each}/same", f"{each}/another-1"]) for each in methods)]
+        [
+            name,
+            *(
+                _show(results, f"{methods[each]}/{name}", [f"{each}/same", f"{each}/another-1"])
+                for each in order
+            ),
+        ]
         for name in sets
     ]
-    return table(("set", *(NAMES.get(each, each) for each in methods)), rows)
+    return table(("set", *(NAMES.get(each, each) for each in order)), rows)
 
 
 def write_answers(results: Results) -> str:
@@ -269,7 +295,9 @@ def write_answers(results: Results) -> str:
                 for each in ("same", "another-1", "another-3")
             ),
             *(
-                _show(results, name, [f"full/{relation}/{each}" for each in outcomes])
+                _show(
+                    results, f"comparison/{name}", [f"full/{relation}/{each}" for each in outcomes]
+                )
                 for relation, outcomes in (
                     ("another-1", OF_THE_LANGUAGE),
                     ("another-3", OF_THE_LANGUAGE),
@@ -285,9 +313,9 @@ def write_answers(results: Results) -> str:
     return table((*head, *outcomes, "far"), rows)
 
 
-def _show(results: Results, name: str, figures: Sequence[str]) -> str:
-    """Return figures of a set with slashes between them, ``-`` where they were not measured."""
-    shown = [results.show(f"comparison/{name}", each, "bare?") for each in figures]
+def _show(results: Results, measurement: str, figures: Sequence[str]) -> str:
+    """Return figures with slashes between them, ``-`` where they were not measured."""
+    shown = [results.show(measurement, each, "bare?") for each in figures]
     return "-" if "-" in shown else " / ".join(shown)
 
 

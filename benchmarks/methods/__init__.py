@@ -25,8 +25,14 @@ _OTHERS: Final = MappingProxyType(
     }
 )
 
-METHODS: Final = (*PROFILES, *_OTHERS)
-"""Names of the methods that are compared by default."""
+TRAINED: Final = ("hmm", "svm", "crf", "bi-lstm")
+"""Names of the methods that are trained, which takes long and needs the extra ``bench``."""
+
+PACKAGES: Final = ("hmmlearn", "sklearn", "pycrfsuite", "keras", "jax")
+"""Packages of this extra."""
+
+METHODS: Final = (*PROFILES, *(name for name in _OTHERS if name not in TRAINED))
+"""Names of the other methods that are compared."""
 
 
 def find_method(name: str) -> Callable[[], Method]:

@@ -101,5 +101,5 @@ def test_takes_of_another_setting_and_without_a_sign_are_counted_apart(
 
 def test_a_set_that_is_not_there_is_named(tmp_path: Path) -> None:
     assert [each.missing() for each in measurements(tmp_path, ())] == [
-        [tmp_path / name] for name in READERS
+        [str(tmp_path / name)] for name in READERS
     ]
