@@ -106,7 +106,7 @@ class Measurement:
     reads
         Files and folders; without one of them the measurement is left out.
     measures
-        Folders of the repository whose change makes the figures old.
+        Folders of the repository whose change makes the figures old, of `runner.FOLDERS`.
     alone
         Whether nothing may run beside it: it measures time.
 

@@ -37,6 +37,7 @@ from app.resources import samples_dir
 from app.robot.active_language import ActiveLanguage
 from app.robot.events import TakeRecognized
 from app.robot.listeners.language_listener import create_listener
+from benchmarks.cost.robot import MEASURES
 from benchmarks.figures import Figure, Measurement, Results, share, table
 
 FOLDER = samples_dir()
@@ -231,7 +232,7 @@ def measurements(folder: Path, methods: tuple[str, ...]) -> Iterator[Measurement
             partial(measure_gesture, *shown),
             "two rendered clips",
             "480 showings a rate, at exponential and at even steps",
-            measures=("app",),
+            measures=MEASURES,
         )
     for rate in (4, 8):
         yield Measurement(
@@ -239,7 +240,7 @@ def measurements(folder: Path, methods: tuple[str, ...]) -> Iterator[Measurement
             partial(show_live, rate),
             "two rendered clips",
             "a robot that is stopped but for one picture at a time, ten showings of `line`",
-            measures=("app",),
+            measures=MEASURES,
             alone=True,
         )
 
