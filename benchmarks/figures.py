@@ -109,7 +109,7 @@ class Measurement:
     packages
         Packages that not every installation has, in the same way.
     measures
-        Folders of the repository whose change makes the figures old.
+        Folders of the repository whose change makes the figures old, of `runner.FOLDERS`.
     alone
         Whether nothing may run beside it: it measures time.
 

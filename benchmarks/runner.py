@@ -78,7 +78,7 @@ TOPICS = (
 
 OUT = ROOT / "benchmarks" / "out"
 
-FOLDERS = ("app", "app/recognition", "benchmarks")
+FOLDERS = ("app", "app/recognition", "app/robot", "benchmarks")
 """Folders whose last change the file of results names; models are in `app/recognition`."""
 
 CODE = ("app", "benchmarks", f":!{RESULTS.relative_to(ROOT).as_posix()}")

@@ -65,6 +65,8 @@ STOCK_EVERY: Final = 10
 RATES: Final = (25, 8, 6, 5, 4, 3, 2.5, 2, 1.5)
 """Frames a second; the clips have 25."""
 
+MEASURES: Final = ("app/recognition", "app/robot")
+
 OUTCOMES: Final = ("right", "wrong", "rejected", "none")
 
 
@@ -288,7 +290,7 @@ def measurements(folder: Path, methods: tuple[str, ...]) -> Iterator[Measurement
         measure_stages,
         "three sample clips",
         "frame rate up to a stage, to decoding alone; median and range",
-        measures=("app",),
+        measures=MEASURES,
         alone=True,
     )
     yield Measurement(
@@ -296,7 +298,7 @@ def measurements(folder: Path, methods: tuple[str, ...]) -> Iterator[Measurement
         measure_endurance,
         "a looped sample clip",
         "ten minutes of stream at 12.5 frames a second; growth a minute after 140 s, in kB",
-        measures=("app",),
+        measures=MEASURES,
     )
     for rate in RATES:
         yield Measurement(
@@ -304,7 +306,7 @@ def measurements(folder: Path, methods: tuple[str, ...]) -> Iterator[Measurement
             partial(measure_rate, rate),
             "16 sample clips",
             "takes through the runtime, thinned to a number of frames a second",
-            measures=("app",),
+            measures=MEASURES,
         )
 
 

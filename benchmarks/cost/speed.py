@@ -172,6 +172,7 @@ def compare_water(quick: bool) -> Iterator[Figure]:
     for name, image in (("small", images[0]), ("large", cv2.resize(images[0], LARGE))):
         for correction in CORRECTIONS[1:]:
             work = partial(apply_correction, np.asarray(image, np.uint8), correction)
+            work()
             yield ratio(f"{name}/{correction}", [seconds(work) / frame for _ in range(10)])
 
 

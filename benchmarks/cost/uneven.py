@@ -2,9 +2,7 @@
 
 A gesture of the sample languages is shown again and again, `PAUSE` seconds apart; the listener sees
 the frames that are due at uneven steps (exponential) or even ones, with their true times. For each
-rate: right and wrong takes, with the rule of `app.recognition.recording.recording` and without. The
-*limit* is the longest gap that a take may have so that no wrong take reaches from one showing into
-the next: the rule's has to lie below that of every gesture that is not `three`.
+rate: right and wrong takes, with the rule of `app.recognition.recording.recording` and without.
 
 `live`: a robot of the command line watches a camera of 25 pictures a second on this machine, and is
 stopped (SIGSTOP) but for one picture at a time; an otherwise idle core is needed.
@@ -15,7 +13,6 @@ from __future__ import annotations
 import json
 import socket
 import sys
-from bisect import bisect
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
@@ -40,6 +37,7 @@ from app.resources import samples_dir
 from app.robot.active_language import ActiveLanguage
 from app.robot.events import TakeRecognized
 from app.robot.listeners.language_listener import create_listener
+from benchmarks.cost.robot import MEASURES
 from benchmarks.figures import Figure, Measurement, Results, share, table
 
 FOLDER = samples_dir()
@@ -69,9 +67,6 @@ IN_A_STREAM = 6
 LIMIT = HOLD_SECONDS + LONGER_HELD + SETTING_OUT
 """Seconds from which a gap takes the label."""
 
-CANDIDATES = tuple(np.arange(0.6, 1.525, 0.05).round(2).tolist())
-"""Longest gaps to choose from, in seconds."""
-
 
 @dataclass(frozen=True)
 class Read:
@@ -81,15 +76,12 @@ class Read:
     ----------
     right
         Whether it is the label of the gesture shown.
-    between
-        Whether it begins in one showing and ends in the next.
     gap
         Seconds of the longest span in which a salute may have been missed.
 
     """
 
     right: bool
-    between: bool
     gap: float
 
 
@@ -100,8 +92,8 @@ def find_clips(gesture: str) -> list[Path]:
 
 def play(
     clips: Sequence[Recording], rate: float, *, even: bool, random: np.random.Generator
-) -> Iterator[tuple[float, PoseSequence, float]]:
-    """Yield what is seen of `IN_A_STREAM` showings: when one began, a frame, its salute score."""
+) -> Iterator[tuple[PoseSequence, float]]:
+    """Yield what is seen of `IN_A_STREAM` showings: a frame, and its salute score."""
     begun = 0.0
     for number in range(IN_A_STREAM):
         clip = clips[number % len(clips)]
@@ -115,7 +107,7 @@ def play(
             frame = min(at, len(clip.poses) - 1)
             shown = float(clip.poses.time[frame])
             pose = replace(clip.poses.between(shown, shown), time=np.array([begun + time]))
-            yield begun, pose, float(clip.salute[frame])
+            yield pose, float(clip.salute[frame])
         begun += float(times[-1]) + STEP
 
 
@@ -139,36 +131,27 @@ def show(
         return ()
 
     for stream in range(showings // IN_A_STREAM):
-        listener, starts = create_listener(language), list[float]()
-        for begun, pose, salute in play(
-            clips, rate, even=even, random=np.random.default_rng((1, stream))
-        ):
-            if begun not in starts:
-                starts.append(begun)
+        listener, random = create_listener(language), np.random.default_rng((1, stream))
+        for pose, salute in play(clips, rate, even=even, random=random):
             with patch("app.recognition.recording.segmentation.find_missable", keep_longest):
                 events = list(listener.feed(pose, salute))
             for event in events:
                 if isinstance(event, TakeRecognized):
-                    first, last = (bisect(starts, each) for each in (event.start, event.end))
-                    yield Read(event.label == gesture, first != last, gap)
+                    yield Read(event.label == gesture, gap)
 
 
 def measure_gesture(name: str, gesture: str, quick: bool) -> Iterator[Figure]:
     """Yield right and wrong takes of a gesture's showings, with the rule and without."""
     language = ActiveLanguage.load(FOLDER / f"{name}.json", "full")
     clips = [record(each) for each in find_clips(gesture)]
-    showings, uneven = IN_A_STREAM if quick else 480, list[Read]()
+    showings = IN_A_STREAM if quick else 480
     for even, rate in [(False, each) for each in UNEVEN] + [(True, each) for each in EVEN]:
         reads = [*show(language, gesture, clips, showings, rate, even=even)]
-        uneven += [] if even else reads
         for rule, kept in (("", [e for e in reads if e.gap < LIMIT - 1e-9]), ("-without", reads)):
             steps = f"{'even' if even else 'uneven'}-{rate}"
             right = sum(each.right for each in kept)
             yield share(f"{steps}/right{rule}", right, showings)
             yield share(f"{steps}/wrong{rule}", len(kept) - right, showings)
-    misread = [each.gap for each in uneven if each.between and not each.right]
-    limit = max((each for each in CANDIDATES if each <= min(misread, default=np.inf)), default=0.0)
-    yield Figure("limit", limit, len(misread), unit="")
 
 
 class Camera(ThreadingHTTPServer):
@@ -249,7 +232,7 @@ def measurements(folder: Path, methods: tuple[str, ...]) -> Iterator[Measurement
             partial(measure_gesture, *shown),
             "two rendered clips",
             "480 showings a rate, at exponential and at even steps",
-            measures=("app",),
+            measures=MEASURES,
         )
     for rate in (4, 8):
         yield Measurement(
@@ -257,7 +240,7 @@ def measurements(folder: Path, methods: tuple[str, ...]) -> Iterator[Measurement
             partial(show_live, rate),
             "two rendered clips",
             "a robot that is stopped but for one picture at a time, ten showings of `line`",
-            measures=("app",),
+            measures=MEASURES,
             alone=True,
         )
 
