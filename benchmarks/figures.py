@@ -17,7 +17,6 @@ import re
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import asdict, dataclass, field, replace
 from hashlib import sha256
-from importlib.util import find_spec
 from pathlib import Path
 from statistics import fmean, median, stdev
 from typing import Any, Literal
@@ -106,8 +105,6 @@ class Measurement:
         Number of people in the data; None: not known, or nobody.
     reads
         Files and folders; without one of them the measurement is left out.
-    packages
-        Packages that not every installation has, in the same way.
     measures
         Folders of the repository whose change makes the figures old, of `runner.FOLDERS`.
     alone
@@ -121,14 +118,12 @@ class Measurement:
     protocol: str
     people: int | None = None
     reads: tuple[Path, ...] = ()
-    packages: tuple[str, ...] = ()
     measures: tuple[str, ...] = ("app/recognition",)
     alone: bool = False
 
     def missing(self) -> list[str]:
         """Return what it needs and is not there."""
-        files = [str(each) for each in self.reads if not each.exists()]
-        return [*files, *(each for each in self.packages if find_spec(each) is None)]
+        return [str(each) for each in self.reads if not each.exists()]
 
     def hash_data(self) -> str | None:
         """Return SHA-256 over the files that it reads; None where it reads none."""

@@ -19,7 +19,7 @@ from __future__ import annotations
 
 from collections import Counter, defaultdict
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import partial
 from itertools import chain
 from pathlib import Path
@@ -31,7 +31,7 @@ import numpy as np
 from app.recognition import OsgError, PoseSequence
 from app.recognition.gestures.profile import PROFILES
 from benchmarks.figures import Figure, Measurement, Results, share, table
-from benchmarks.methods import METHODS, PACKAGES, TRAINED, find_method
+from benchmarks.methods import COSTLY, METHODS, find_method
 from benchmarks.methods.base import Demonstration, Method, Prediction
 from benchmarks.sets.every_set import is_of_bodies, measure_sets
 from benchmarks.sets.one_shot_draws import draw_several, draws
@@ -42,8 +42,8 @@ YARDSTICK = "full"
 PEOPLE = (1, 3)
 
 DRAWS = 20
-DRAWS_OF_TRAINED = 4
-"""Languages a set: the trained methods, which take long, see the first of them."""
+DRAWS_OF_COSTLY = 4
+"""Languages a set: the methods that take long see the first of them."""
 
 OF_THE_LANGUAGE = ("right", "asked", "refused", "wrong")
 OUT_OF_VOCABULARY = ("answered", "asked", "refused")
@@ -217,7 +217,7 @@ def compare(methods: tuple[str, ...], data: str, languages: Sequence[Language]) 
         for relation, nearest in outcomes.nearest.items():
             yield share(f"{method}/{relation}", nearest[True], nearest.total())
         # The other methods here answer each take as a gesture.
-        if name not in (*METHODS, *TRAINED) or name in PROFILES:
+        if name not in (*METHODS, *COSTLY) or name in PROFILES:
             yield from count_answers(method, outcomes)
         for cost, mine, theirs in (
             ("fit", outcomes.fitting, first.fitting),
@@ -241,25 +241,24 @@ def count_answers(method: str, outcomes: Outcomes) -> Iterator[Figure]:
 
 
 def measurements(folder: Path, methods: tuple[str, ...]) -> Iterator[Measurement]:
-    """Yield the comparison on every set, and that with the trained methods in some of its draws."""
+    """Yield the comparison on every set, and that with the costly methods in some of its draws."""
     protocol = (
         "{} languages of all classes, 30 takes each by the same person, by others, of classes that "
         "the language lacks, and of people who do not sign; one demonstration by one or by three"
     )
     trajectories = folder / "trajectories"
-    for topic, compared, names, count in (
-        ("comparison", (YARDSTICK, *methods) if methods else METHODS, (*SETS, *ARM_CLASSES), DRAWS),
-        ("trained", (YARDSTICK, *TRAINED), SETS, DRAWS_OF_TRAINED),
+    for topic, compared, count in (
+        ("comparison", methods or METHODS, DRAWS),
+        ("costly", COSTLY, DRAWS_OF_COSTLY),
     ):
-        for each in measure_sets(
+        yield from measure_sets(
             topic,
             folder,
-            names,
+            (*SETS, *ARM_CLASSES),
             partial(compare_on_set, compared, count, trajectories),
             protocol.format(count),
             trajectories / "kindergator.npz",
-        ):
-            yield replace(each, packages=PACKAGES) if topic == "trained" else each
+        )
 
 
 def write_nearest(results: Results) -> str:
@@ -267,7 +266,7 @@ def write_nearest(results: Results) -> str:
     sets = results.names("comparison")
     methods = {
         figure.partition("/")[0]: topic
-        for topic in ("trained", "comparison")
+        for topic in ("costly", "comparison")
         for name in results.names(topic)
         for figure in results.measured[f"{topic}/{name}"].figures
     }

@@ -25,13 +25,10 @@ _OTHERS: Final = MappingProxyType(
     }
 )
 
-TRAINED: Final = ("hmm", "svm", "crf", "bi-lstm")
-"""Names of the methods that are trained, which takes long and needs the extra ``bench``."""
+COSTLY: Final = ("published", "hmm", "svm", "crf", "bi-lstm")
+"""Names of the methods that take long; all but the first are trained, in the extra ``bench``."""
 
-PACKAGES: Final = ("hmmlearn", "sklearn", "pycrfsuite", "keras", "jax")
-"""Packages of this extra."""
-
-METHODS: Final = (*PROFILES, *(name for name in _OTHERS if name not in TRAINED))
+METHODS: Final = (*PROFILES, *(name for name in _OTHERS if name not in COSTLY))
 """Names of the other methods that are compared."""
 
 
