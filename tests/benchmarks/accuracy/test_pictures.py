@@ -95,6 +95,7 @@ def test_plain_water_is_the_wider_side_beside_all_boxes() -> None:
     assert (water[0, 0, 0], water.shape) == (50, (120, 110, 3))
     wide = {"Diver": np.array([[[40.0, 0.0], [120.0, 90.0]]])}
     assert crop_water(Still(Path("a.jpg"), wide), image) is None
+    assert crop_water(Still(Path("a.jpg"), {"Hand": HANDS}), image) is None
 
 
 @pytest.mark.parametrize("taught", [True, False])
