@@ -295,8 +295,17 @@ Table = Callable[[Results], str]
 
 
 def table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
-    """Return a table in Markdown."""
+    """Return a table in Markdown.
+
+    Raises
+    ------
+    FigureError
+        Without a row.
+
+    """
     lines = [head, ["---"] * len(head), *rows]
+    if len(lines) == 2:
+        raise FigureError(f"nobody measured a row of the table {' | '.join(head)}")
     return "\n".join(f"| {' | '.join(line)} |" for line in lines)
 
 

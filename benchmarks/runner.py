@@ -304,15 +304,24 @@ def write_results(path: Path, results: Results) -> None:
     path.write_text(f"{lines}\n", "utf-8")
 
 
-def write_pages(results: Results) -> None:
-    """Write the figures and tables into every page that quotes one."""
-    written = tables()
+def write_pages(results: Results) -> bool:
+    """Write the figures and tables into every page that quotes one.
+
+    A page that quotes what nobody measured is named, and stays as it is; then the result is False.
+    """
+    written, complete = tables(), True
     for page in PAGES:
         text = page.read_text("utf-8")
-        filled = fill(text, results, written)
+        try:
+            filled = fill(text, results, written)
+        except FigureError as error:
+            print(f"{page.relative_to(ROOT)} is not written: {error}.")
+            complete = False
+            continue
         if filled != text:
             page.write_text(filled, "utf-8")
             print(f"{page.relative_to(ROOT)} is written.")
+    return complete
 
 
 def hash_folders() -> dict[str, str]:
@@ -361,7 +370,7 @@ def main() -> None:
     given = parser.parse_args()
     try:
         sys.exit(bench(given))
-    except (BenchError, FigureError) as error:
+    except BenchError as error:
         parser.error(str(error))
     except KeyboardInterrupt:
         parser.exit(130, "Broken off; the same command goes on where it was, unless it is quick.\n")
@@ -372,8 +381,7 @@ def bench(given: argparse.Namespace) -> int:
     trees = hash_folders()
     before = read_results(trees=trees)
     if given.pages:
-        write_pages(before)
-        return 0
+        return 0 if write_pages(before) else 1
     if given.folder is not None and not given.folder.is_dir():
         raise BenchError(f"{given.folder} is not a folder")
     order = Order(given.folder, given.quick, tuple(given.method))
@@ -400,6 +408,4 @@ def bench(given: argparse.Namespace) -> int:
     everything = {**before.measured, **made}
     results = Results({name: everything[name] for name in known if name in everything}, trees)
     write_results(RESULTS if kept else OUT / "results.json", results)
-    if kept:
-        write_pages(results)
-    return 0 if succeeded else 1
+    return 0 if (not kept or write_pages(results)) and succeeded else 1
