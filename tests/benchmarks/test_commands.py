@@ -27,8 +27,6 @@ CITED = sorted(
 def test_a_cited_benchmark_starts(
     name: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    if name == "benchmarks.accuracy.cutting":
-        pytest.importorskip("numba", reason="renders clips, languages/render/requirements.txt")
     module = importlib.import_module(name if "." in name else f"{name}.__main__")
     monkeypatch.setattr(sys, "argv", [name, "--help"])
     with pytest.raises(SystemExit) as ended:
