@@ -61,10 +61,10 @@ class Condition(NamedTuple):
 
 
 CONDITIONS: Final = {
-    "murk": Condition(FOUR, ("off", "auto"), 0.75),
-    "far-murk": Condition(FOUR, ("off", "auto"), 0.5, far=True),
+    "near": Condition(FOUR, ("off", "auto"), 0.75),
+    "far": Condition(FOUR, ("off", "auto"), 0.5, far=True),
     "blink": Condition(EIGHT, ("auto",), 0.0, blink=0.6),
-    "blink-murk": Condition(EIGHT, ("auto",), 0.5, blink=0.6),
+    "blink-murky": Condition(EIGHT, ("auto",), 0.5, blink=0.6),
 }
 
 
@@ -152,7 +152,7 @@ def measurements(folder: Path, methods: tuple[str, ...]) -> Iterator[Measurement
     """Yield what is found in each condition, and what the correction costs."""
     for name, (clips, _, murk, far, blink) in CONDITIONS.items():
         yield Measurement(
-            f"clips/{name}",
+            f"murk/{name}",
             partial(measure, name),
             f"{len(clips)} rendered clips, murk {murk}, {'far' if far else 'near'}, blink {blink}",
             "each clip degraded, compressed and read with each setting of the correction",
