@@ -31,6 +31,14 @@ RESULTS = ROOT / "benchmarks" / "results.json"
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
 """Pages that may quote figures."""
 
+FINDING = tuple(
+    f"app/recognition/{each}" for each in ("estimation", "models", "poses", "recording")
+)
+"""Folders that find keypoints in pictures, with the models."""
+
+FOLDERS = ("app", "app/recognition", *FINDING, "app/robot", "benchmarks")
+"""Folders of which a measurement may say that it measures them."""
+
 OLD = "†"
 """Mark of a figure that was measured before the last change of what it measures."""
 
@@ -267,7 +275,8 @@ class Results:
                 return "-"
             style = style[:-1]
         found = self.find(measurement, figure)
-        return _format(found, style) + (OLD if self.is_old(measurement) else "")
+        counted = style in ("n", "hits")
+        return _format(found, style) + (OLD if not counted and self.is_old(measurement) else "")
 
 
 _FORMATS: dict[Unit, str] = {"%": "{:.1%}", "points": "{:+.1f}", "ratio": "{:.2f}", "": "{:.3g}"}

@@ -38,6 +38,7 @@ from traceback import format_exception
 
 from app import __version__
 from benchmarks.figures import (
+    FOLDERS,
     PAGES,
     RESULTS,
     ROOT,
@@ -77,9 +78,6 @@ TOPICS = (
 """Modules with `measurements`, and `TABLES` if pages quote one. A process imports one."""
 
 OUT = ROOT / "benchmarks" / "out"
-
-FOLDERS = ("app", "app/recognition", "app/robot", "benchmarks")
-"""Folders whose last change the file of results names; models are in `app/recognition`."""
 
 CODE = ("app", "benchmarks", f":!{RESULTS.relative_to(ROOT).as_posix()}")
 """What has to be in a commit before it is measured."""

@@ -54,7 +54,7 @@ from app.recognition.poses.sequence import FloatArray
 from app.recognition.recording.salute import ENTER_SCORE, salute_score
 from app.recognition.recording.video import ALPHA_BACKGROUND, over_background
 from benchmarks.accuracy.published_signs import read_picture
-from benchmarks.figures import Figure, Measurement, Results, share, table
+from benchmarks.figures import FINDING, Figure, Measurement, Results, share, table
 from tests.recognition.parametric_hand import labelled_hands
 
 ALL: Final = slice(None)
@@ -358,6 +358,7 @@ def measurements(folder: Path, methods: tuple[str, ...]) -> Iterator[Measurement
             "722 photographs of divers in five waters",
             protocol,
             reads=(stills,),
+            measures=FINDING,
         )
     yield Measurement(
         "pictures/plain-water",
@@ -365,12 +366,14 @@ def measurements(folder: Path, methods: tuple[str, ...]) -> Iterator[Measurement
         "water beside the diver in these photographs",
         "the wider side of every fourth photograph with a diver, where at least 30 % wide",
         reads=(stills,),
+        measures=FINDING,
     )
     yield Measurement(
         "pictures/salutes-synthetic",
         measure_synthetic,
         "hands with known joint angles, other seed than tuned on",
         "3000 hands, two in five saluting",
+        measures=FINDING,
     )
     yield Measurement(
         "pictures/salutes-pictures",
@@ -378,6 +381,7 @@ def measurements(folder: Path, methods: tuple[str, ...]) -> Iterator[Measurement
         "12 rendered salutes, 84 renders of other hand signs and 20 photographs",
         "each picture by itself; pictures in which a hand is found",
         reads=(folder / "hands",),
+        measures=FINDING,
     )
 
 
