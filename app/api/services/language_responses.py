@@ -13,9 +13,9 @@ from fastapi import Response
 from app.api.http.revisions import revision_tag
 from app.api.http.schemas.gestures import DemonstrationView, GestureView, SourceView
 from app.api.http.schemas.languages import LanguageSummary, LanguageView
-from app.api.services.demonstration_sources import sources_in
 from app.api.services.language_documents import draft_of
-from app.api.services.running_studio import DocumentCache, Studio
+from app.api.services.running_studio import Studio
+from app.api.services.stored_languages import DocumentCache, language_of
 from app.recognition import Language
 from app.recognition.explanation.strokes import transcribe_gesture
 from app.recognition.explanation.transcript import describe_strokes
@@ -66,8 +66,8 @@ def announce(studio: Studio, state: LanguageState, response: Response) -> Langua
 def answer(studio: Studio, state: LanguageState, response: Response) -> LanguageView:
     """Answer with a language, and set its ETag header."""
     response.headers["ETag"] = revision_tag(state.revision.revision)
-    language = studio.language(state)
-    sources = sources_in(studio, language)
+    language = language_of(state)
+    sources = studio.demonstrations.view(language)
     return LanguageView(
         **view_summary(state).model_dump(),
         gestures=[

@@ -13,9 +13,11 @@ import httpx
 import pytest
 
 from app.api.routes.languages import checks, language_files, languages
-from app.api.services import language_responses, running_studio
+from app.api.services import language_responses, running_studio, stored_languages
 from app.api.services.language_documents import draft_of
+from app.api.services.limited_routes import MOST_COMPUTATIONS, MOST_EDITS
 from app.api.services.running_studio import check_store, clean
+from app.api.services.stored_languages import language_of
 from app.recognition import Language
 from app.settings import Settings
 from app.store import NotFound, StoreUnavailable
@@ -103,12 +105,12 @@ def test_long_computations_of_many_clients_take_turns(
         language = client.post("/api/v1/languages", json={"name": "pool"}).json()["id"]
         place = f"/api/v1/languages/{language}/slate.svg"
         answers = [others.submit(client.get, place) for _ in range(8)]
-        until(lambda: at_work == running_studio.MOST_COMPUTATIONS)
+        until(lambda: at_work == MOST_COMPUTATIONS)
         # Others are answered meanwhile.
         assert client.get(f"/api/v1/languages/{language}").status_code == 200
         free.set()
         assert {answer.result().status_code for answer in answers} == {200}
-    assert most == running_studio.MOST_COMPUTATIONS
+    assert most == MOST_COMPUTATIONS
 
 
 def test_cached_languages_are_limited_by_their_documents(
@@ -118,23 +120,23 @@ def test_cached_languages_are_limited_by_their_documents(
         server.studio.languages.create(draft_of(Language(name=name * 70), "made")) for name in "abc"
     ]
     size = len(states[0].revision.document)
-    monkeypatch.setattr(running_studio, "MOST_CACHED_CHARACTERS", 2 * size)
-    first = server.studio.language(states[0])
-    assert server.studio.language(states[0]) is first
-    server.studio.language(states[1])
-    assert server.studio.language(states[0]) is first
+    monkeypatch.setattr(stored_languages, "MOST_CACHED_CHARACTERS", 2 * size)
+    first = language_of(states[0])
+    assert language_of(states[0]) is first
+    language_of(states[1])
+    assert language_of(states[0]) is first
     for state in states[1:]:
-        server.studio.language(state)
-    assert server.studio.language(states[0]) is not first
-    monkeypatch.setattr(running_studio, "MOST_CACHED_CHARACTERS", 1)
-    long = server.studio.language(states[2])
-    assert server.studio.language(states[2]) is long
+        language_of(state)
+    assert language_of(states[0]) is not first
+    monkeypatch.setattr(stored_languages, "MOST_CACHED_CHARACTERS", 1)
+    long = language_of(states[2])
+    assert language_of(states[2]) is long
 
 
 def test_what_is_told_of_languages_keeps_no_more_of_their_documents(
     client: httpx.Client, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(running_studio, "MOST_CACHED_CHARACTERS", 1)
+    monkeypatch.setattr(stored_languages, "MOST_CACHED_CHARACTERS", 1)
     for name in ("pool", "sea", "lake"):
         made = client.post("/api/v1/languages", json={"name": name}).json()
         place = f"/api/v1/languages/{made['id']}"
@@ -160,10 +162,10 @@ def test_edits_of_languages_that_wait_take_no_thread(
         answers = [
             others.submit(client.patch, place, json={"author": str(number)}) for number in range(50)
         ]
-        until(lambda: len(made) == running_studio.MOST_EDITS)
+        until(lambda: len(made) == MOST_EDITS)
         # More wait than there are threads, and others are answered meanwhile.
         assert client.get(place).json()["revision"] == 1
-        assert len(made) == running_studio.MOST_EDITS
+        assert len(made) == MOST_EDITS
         free.set()
         assert {answer.result().status_code for answer in answers} == {200}
     assert sorted(made) == sorted(map(str, range(50)))

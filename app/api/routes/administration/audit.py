@@ -10,7 +10,7 @@ from pydantic import AwareDatetime, Field
 
 from app.api.http.problems import problem_responses
 from app.api.http.schemas.values import View
-from app.api.services.running_studio import CurrentStudio
+from app.api.services.running_studio import Audit
 from app.store.audit import MOST_LISTED
 
 Moment = Annotated[
@@ -43,7 +43,7 @@ class AuditView(View):
 
 @router.get("", responses=problem_responses())
 def list_audit(
-    studio: CurrentStudio,
+    audit: Audit,
     limit: Annotated[int, Query(ge=1, le=MOST_LISTED)] = 100,
     before: Annotated[
         int | None, Query(ge=1, le=2**31 - 1, description="Only smaller ids: the next page")
@@ -53,5 +53,5 @@ def list_audit(
     until: Annotated[Moment | None, Query(description="Only before this moment")] = None,
 ) -> list[AuditView]:
     """List changes, the newest first; only for the role admin where tokens are needed."""
-    entries = studio.audit.newest(limit, before=before, name=name, since=since, until=until)
+    entries = audit.newest(limit, before=before, name=name, since=since, until=until)
     return [AuditView.model_validate(entry) for entry in entries]

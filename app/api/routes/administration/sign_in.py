@@ -9,7 +9,7 @@ from app.api.http.problems import problem_responses
 from app.api.http.schemas.values import View
 from app.api.middleware.access import COOKIE, cookie_of
 from app.api.services.identities import identity_of
-from app.api.services.running_studio import CurrentStudio
+from app.api.services.running_studio import Quotas, ServerSettings, SignIns
 from app.store import Role
 
 router = APIRouter(prefix="/session", tags=["administration"])
@@ -40,12 +40,12 @@ class SessionView(View):
 
 
 @router.get("", responses=problem_responses())
-def get_session(request: Request, studio: CurrentStudio) -> SessionView:
+def get_session(request: Request, quotas: Quotas) -> SessionView:
     """Return the name and the role of the token in use, and what is left of its quota."""
     identity = identity_of(request.scope)
     quota = None
     if identity.quota_bytes or identity.quota_clips:
-        usage = studio.quotas.usage(identity.name)
+        usage = quotas.usage(identity.name)
         quota = QuotaView(
             clips=usage.clips,
             most_clips=identity.quota_clips,
@@ -61,11 +61,11 @@ def get_session(request: Request, studio: CurrentStudio) -> SessionView:
 
 
 @router.delete("", status_code=204, responses=problem_responses())
-def end_session(request: Request, studio: CurrentStudio) -> Response:
+def end_session(request: Request, sign_ins: SignIns, settings: ServerSettings) -> Response:
     """Log out: the session ends on all servers, and its open streams with it."""
     if cookie := cookie_of(request.headers):
-        studio.sign_ins.end(cookie)
+        sign_ins.end(cookie)
     response = Response(status_code=204)
-    path = f"{prefix_of(request.headers, studio.settings)}/"
+    path = f"{prefix_of(request.headers, settings)}/"
     response.delete_cookie(COOKIE, path=path, httponly=True, samesite="strict")
     return response

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from app.api.services.running_studio import Studio
+from app.api.services.stored_languages import language_of
 from app.api.services.stored_recognitions import locate_cuts
 from app.recognition.explanation.counterfactuals import Counterfactual, Intervention
 from app.recognition.gestures.profile import PROFILES
@@ -120,7 +121,7 @@ def test_what_cannot_be_recognised_says_why(
 def test_a_cut_of_a_demonstration_is_told_with_its_clip(
     studio: Studio, spoken: str, circle_clip: str
 ) -> None:
-    language = studio.language(studio.languages.get(spoken))
+    language = language_of(studio.languages.get(spoken))
     values = {"label": "circle", "demonstration": 0, "start": 0.2, "end": 1.0}
     cut = Counterfactual(
         change=Intervention("demonstration_cut", 0.5, values),
