@@ -201,12 +201,6 @@ def try_gesture(
     return change_gesture_of(language, trial.label, change, demonstration)
 
 
-def load_language(record: store.RecognitionRecord, studio: Studio) -> Language:
-    """Return the language that a recognition used, with the changed gesture of a trial."""
-    language = language_of(studio.languages.get(record.language_id, record.revision))
-    return try_gesture(studio.clips, language, view_recognition(record).trial) or language
-
-
 def load_recognition(record: store.RecognitionRecord) -> Recognition:
     """Return the recogniser's answer as it was when `record` was made."""
     result: dict[str, Any] = json.loads(record.result)

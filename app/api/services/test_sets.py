@@ -201,7 +201,9 @@ def test_run_of(studio: Studio, state: store.LanguageState) -> Job[Finished | Fa
 
     """
     takes, wanted = [], []
-    for take, without in list_waiting(studio, state):
+    for take, without, view in _view_takes(studio, state):
+        if not _is_waiting(view, state.revision.revision):
+            continue
         try:
             wanted.append(_request_for(studio.clips, take, without))
             takes.append(take)
@@ -225,20 +227,6 @@ def test_run_of(studio: Studio, state: store.LanguageState) -> Job[Finished | Fa
 
     event = events_about("tests", id=language_id, revision=revision)
     return Job("test_run", test_run_key(language_id, revision), event, run, detached=True)
-
-
-def list_waiting(
-    studio: Studio, state: store.LanguageState
-) -> list[tuple[store.LabelledTake, LeftOut]]:
-    """Return the testable takes that the revision has not recognised yet, and what reads them not.
-
-    A take that is a demonstration is read by the language without that demonstration.
-    """
-    return [
-        (take, without)
-        for take, without, view in _view_takes(studio, state)
-        if _is_waiting(view, state.revision.revision)
-    ]
 
 
 def _is_waiting(take: LabelledTakeView, revision: int) -> bool:

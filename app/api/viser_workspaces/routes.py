@@ -25,7 +25,7 @@ from app.api.services.identities import identity_of
 from app.api.services.recording_cache import recording_of
 from app.api.services.running_studio import CurrentStudio, Studio
 from app.api.services.stored_languages import language_of
-from app.api.services.stored_recognitions import load_language, load_recognition
+from app.api.services.stored_recognitions import load_recognition, try_gesture, view_recognition
 from app.recognition import Language
 from app.recognition.errors import OsgError
 from app.store import RecognitionRecord
@@ -82,7 +82,8 @@ def _language(
     studio: Studio, request: ViewRequest, record: RecognitionRecord | None
 ) -> Language | None:
     if record is not None:
-        return load_language(record, studio)
+        language = language_of(studio.languages.get(record.language_id, record.revision))
+        return try_gesture(studio.clips, language, view_recognition(record).trial) or language
     if request.language_id:
         return language_of(studio.languages.get(request.language_id))
     return None

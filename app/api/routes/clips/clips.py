@@ -5,7 +5,7 @@ from __future__ import annotations
 import filecmp
 import json
 from functools import partial
-from typing import Annotated
+from typing import Annotated, Any
 
 import numpy as np
 from fastapi import APIRouter, Header, Request, Response
@@ -158,7 +158,7 @@ async def retry_clip(request: Request, clip_id: str, studio: CurrentStudio) -> s
     if clip.needs_topic:
         raise ProblemError(409, "topic_needed", "choose first which topic the clip is made of")
     await require_place_in_queue(request, studio)
-    return await _another_job(request, clip_id, studio)
+    return await _submit(await _add_job(request, clip_id, studio), studio)
 
 
 @router.post("/{clip_id}/topic", status_code=202, responses=problem_responses(404, 409, 429))
@@ -176,7 +176,7 @@ async def choose_topic(
         raise ProblemError(409, "job_not_needed", detail)
     await require_place_in_queue(request, studio)
     await run_in_threadpool(studio.clips.choose_topic, clip_id, choice.topic)
-    return await _another_job(request, clip_id, studio)
+    return await _submit(await _add_job(request, clip_id, studio), studio)
 
 
 @router.post("/{clip_id}/turn", status_code=202, responses=problem_responses(404, 409, 429))
@@ -198,10 +198,6 @@ async def turn_clip(
     job = await _add_job(request, clip_id, studio, anew=True)
     await run_in_threadpool(studio.clips.turn, clip_id, choice.degrees)
     return await _submit(job, studio)
-
-
-async def _another_job(request: Request, clip_id: str, studio: Studio) -> schemas.ClipAccepted:
-    return await _submit(await _add_job(request, clip_id, studio), studio)
 
 
 async def _add_job(request: Request, clip_id: str, studio: Studio, *, anew: bool = False) -> Job:
@@ -267,14 +263,12 @@ def get_poster(clip_id: str, clips: Clips) -> Response:
 def get_poses(clip_id: str, clips: Clips) -> Response:
     """Return the landmarks in every frame."""
     poses = recording_of(clips, clip_id).poses
-    xy, confidence = np.round(poses.xy, PIXEL_DIGITS), poses.confidence
+    confidence = poses.confidence
     content = {
         "landmarks": list(poses.landmarks),
         "time": np.round(poses.time, TIME_DIGITS).tolist(),
-        "xy": np.where(np.isnan(xy), None, xy).tolist(),  # type: ignore[call-overload]
-        "confidence": None
-        if confidence is None
-        else np.round(confidence, CONFIDENCE_DIGITS).tolist(),
+        "xy": _with_nulls(poses.xy, PIXEL_DIGITS),
+        "confidence": None if confidence is None else _with_nulls(confidence, CONFIDENCE_DIGITS),
         "frame_size": list(poses.frame_size),
     }
     # Serialised here, because pydantic would validate a million numbers again.
@@ -336,7 +330,7 @@ def get_timeline(
     content = {
         "time": np.round(recording.poses.time, TIME_DIGITS).tolist(),
         "salute": np.round(scores, CURVE_DIGITS).tolist(),
-        "speed": {name: _with_nulls(speed) for name, speed in speeds.items()},
+        "speed": {name: _with_nulls(speed, CURVE_DIGITS) for name, speed in speeds.items()},
         "unseen": [[each.start, each.end] for each in list_unseen(recording, trigger)],
         "unit": unit,
         "thumbnails": thumbnails_in(len(recording.poses)) if has_thumbnails else 0,
@@ -378,6 +372,6 @@ def wrist_speeds(recording: Recording) -> tuple[dict[str, FloatArray], str]:
     return speeds, trajectory.unit
 
 
-def _with_nulls(values: FloatArray) -> list[float | None]:
-    rounded = np.round(values, CURVE_DIGITS)
-    return [None if np.isnan(value) else float(value) for value in rounded]
+def _with_nulls(values: FloatArray, digits: int) -> list[Any]:
+    rounded = np.round(values, digits)
+    return list(np.where(np.isnan(rounded), None, rounded).tolist())  # type: ignore[call-overload]

@@ -205,7 +205,7 @@ def _view(
     trajectory, shown = draft.trajectory(), draft.demonstration
     return PreviewView(
         problem=problem,
-        image=None if gesture is None else _image(gesture, marks=marks),
+        image=None if gesture is None else to_data_url(draw_trajectory_image(gesture, marks)),
         salient=[] if gesture is None else list(gesture.salient),
         held_shapes=0 if gesture is None else len(gesture.held_shapes),
         keypoints=[] if trajectory is None else _keypoints(trajectory),
@@ -218,11 +218,6 @@ def _view(
         strokes="" if gesture is None else describe_strokes(transcribe_gesture(gesture)),
         faults=list(faults),
     )
-
-
-def _image(gesture: Gesture, *, marks: bool) -> str:
-    """Return a gesture's trajectory image as a data URI."""
-    return to_data_url(draw_trajectory_image(gesture, marks))
 
 
 def _keypoints(trajectory: Trajectory) -> list[KeypointView]:

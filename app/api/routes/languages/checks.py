@@ -40,7 +40,7 @@ from app.recognition.explanation.blame import find_blame
 from app.recognition.explanation.context import KnownTakes
 from app.recognition.gestures.gesture import MAX_LABEL_LENGTH, Gesture
 from app.recognition.health.finding import Finding, Verdict
-from app.recognition.health.phrase_ambiguity import Ambiguity, AmbiguityKind, find_ambiguities
+from app.recognition.health.phrase_ambiguity import AmbiguityKind, find_ambiguities
 from app.recognition.phrases.grammar import Grammar
 from app.recognition.phrases.parser import PhraseEvent, PhraseEventKind, PhraseParser
 from app.store import LanguageState
@@ -147,7 +147,10 @@ def _find_faults(studio: Studio, state: LanguageState) -> list[dict[str, Any]]:
         if faults
     ]
     seen = {label for label, _ in told}
-    told += [each for each in _blame(studio, state) if each[0] not in seen]
+    if takes := list_known(studio, state.record.id):
+        ranges = tuple((each.clip_id, each.start, each.expected) for each in takes)
+        blamed = _blame_by(studio, state.record.id, state.revision.revision, ranges)
+        told += [each for each in blamed if each[0] not in seen]
     return [
         Finding("demonstration_fault", (label,), sentence, True).to_dict()
         for label, sentence in told
@@ -158,18 +161,14 @@ CACHED_BLAME = 64
 """Revisions, each with its known takes, of which it is known which demonstrations they blame."""
 
 
-def _blame(studio: Studio, state: LanguageState) -> tuple[tuple[str, str], ...]:
-    """Return gesture and sentence of each demonstration that the known takes blame."""
-    takes = list_known(studio, state.record.id)
-    ranges = tuple((each.clip_id, each.start, each.expected) for each in takes)
-    return _blame_by(studio, state.record.id, state.revision.revision, ranges) if takes else ()
-
-
 @lru_cache(CACHED_BLAME)
 def _blame_by(
     studio: Studio, language_id: str, revision: int, _takes: tuple[tuple[str, float, str], ...]
 ) -> tuple[tuple[str, str], ...]:
-    """Find the same; the known takes distinguish the states of the test set in the cache."""
+    """Return gesture and sentence of each demonstration that the known takes blame.
+
+    The takes distinguish the states of the test set in the cache.
+    """
     language = language_of(studio.languages.get(language_id, revision))
     if not language.gestures:
         return ()
@@ -331,9 +330,6 @@ def _feed(parser: PhraseParser, shown: str) -> tuple[PhraseEvent, ...]:
     return parser.feed(one or None, 0.0, 0.0)
 
 
-def _find_ambiguities(document: str) -> tuple[Ambiguity, ...]:
-    grammar = Language.from_json(document).grammar
-    return () if grammar is None else find_ambiguities(grammar)
-
-
-_ambiguities = DocumentCache(_find_ambiguities)
+_ambiguities = DocumentCache(
+    lambda document: find_ambiguities(Language.from_json(document).grammar or Grammar())
+)

@@ -16,6 +16,7 @@ from starlette.concurrency import run_in_threadpool
 from app.api.http.problems import ProblemError, problem_of, problem_responses
 from app.api.http.schemas.values import Body, Identifier, View
 from app.api.jobs.job import Job, Report, TimeLeft, compute_in_place, events_about
+from app.api.routes.asked_revisions import NewestRevision
 from app.api.routes.awaited_jobs import await_job
 from app.api.services.demonstration_sources import SAME_TAKE, find_takes
 from app.api.services.recording_cache import recording_of
@@ -28,14 +29,7 @@ from app.evaluation.take_table import Row, row_of_fault, rows_of_clip, write_csv
 from app.recognition import OsgError, Recognition, Take
 from app.recognition.recording.clip_range import SAME_MOMENT, find_unseen_in
 from app.recognition.recording.segmentation import find_brackets
-from app.store import (
-    Clip,
-    ClipStore,
-    LabelledTake,
-    LabelledTakeStore,
-    LanguageState,
-    StoreError,
-)
+from app.store import Clip, ClipStore, LabelledTake, LabelledTakeStore, LanguageState, StoreError
 
 MOST_CLIPS = 500
 """Most clips of one table."""
@@ -89,26 +83,19 @@ router = APIRouter(prefix="/languages/{language_id}/take-table", tags=["language
 
 @router.post("", responses=problem_responses(404))
 async def make_take_table(
-    request: Request, language_id: str, wanted: TakeTableRequest, studio: CurrentStudio
+    request: Request, asked: NewestRevision, wanted: TakeTableRequest, studio: CurrentStudio
 ) -> TakeTableView:
     """Recognise all takes of clips, and return one table; nothing is kept.
 
     How far it is comes as `tables` among the events; closing the request cancels it.
     """
-    state, clips = await run_in_threadpool(_load, studio, language_id, wanted)
-    recognize = partial(recognize_clip_takes, studio, state)
+    recognize = partial(recognize_clip_takes, studio, await run_in_threadpool(lambda: asked.state))
+    clips = await run_in_threadpool(
+        lambda: [studio.clips.get(clip_id).clip for clip_id in wanted.clip_ids]
+    )
     job = take_table_job(wanted.id, clips, recognize, studio.turns.computations)
     rows = await await_job(request, studio.runner, job)
     return TakeTableView(rows=[TakeRowView(**row) for row in rows], csv=write_csv(rows))
-
-
-def _load(
-    studio: Studio, language_id: str, wanted: TakeTableRequest
-) -> tuple[LanguageState, list[Clip]]:
-    return (
-        studio.languages.get(language_id),
-        [studio.clips.get(clip_id).clip for clip_id in wanted.clip_ids],
-    )
 
 
 def take_table_job(
