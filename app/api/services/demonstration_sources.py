@@ -65,10 +65,15 @@ class Demonstrations:
     clips, sources
         The store.
 
+    Attributes
+    ----------
+    clips
+        The store of the clips.
+
     """
 
     def __init__(self, clips: ClipStore, sources: SourceStore) -> None:
-        self._clips, self._sources = clips, sources
+        self.clips, self._sources = clips, sources
 
     def keep(
         self,
@@ -88,7 +93,7 @@ class Demonstrations:
         end = demonstration.end if where.end is None else where.end
         if where.start is None and where.end is None:
             # A request without a range means the clip's only take, from salute to salute.
-            for take in find_brackets(recording_of(self._clips, where.clip_id), language.trigger):
+            for take in find_brackets(recording_of(self.clips, where.clip_id), language.trigger):
                 start, end = take.start, take.end
         source = DemonstrationSource(
             trajectory=key,
@@ -123,11 +128,11 @@ class Demonstrations:
         trigger = language.trigger
 
         def view(source: DemonstrationSource, shown: Gesture) -> SourceView:
-            faults = view_faults(self._clips, source, shown, trigger)
+            faults = view_faults(self.clips, source, shown, trigger)
             where = source.clip_id, source.start, source.end
             return SourceView(
                 **source.model_dump(exclude={"trajectory"}),
-                salutes=count_triggers_in_clip(self._clips, *where, trigger),
+                salutes=count_triggers_in_clip(self.clips, *where, trigger),
                 fault=faults[0].words if faults else None,
                 faults=faults,
             )
@@ -138,7 +143,7 @@ class Demonstrations:
         """Return by label the faults of each demonstration; none where its clip is not known."""
 
         def find(source: DemonstrationSource, shown: Gesture) -> tuple[DemonstrationFault, ...]:
-            return faults_of_source(self._clips, source, shown, language.trigger)
+            return faults_of_source(self.clips, source, shown, language.trigger)
 
         return self._tell(language, find, ())
 

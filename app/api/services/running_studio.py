@@ -233,11 +233,6 @@ def clean(studio: Studio, moment: datetime) -> None:
         logger.info("removed %d deleted or abandoned objects and %d files", purged, swept)
 
 
-async def _studio_of(connection: HTTPConnection) -> Studio:
-    studio: Studio = connection.app.state.studio
-    return studio
-
-
 def _part(choose: Callable[[Studio], Part]) -> Any:
     async def part_of(connection: HTTPConnection) -> Part:
         return choose(connection.app.state.studio)
@@ -245,7 +240,7 @@ def _part(choose: Callable[[Studio], Part]) -> Any:
     return Depends(part_of)
 
 
-CurrentStudio = Annotated[Studio, Depends(_studio_of)]
+CurrentStudio = Annotated[Studio, _part(lambda studio: studio)]
 """Type of a route's parameter that receives the running studio; those below receive one part."""
 
 Audit = Annotated[store.AuditStore, _part(lambda studio: studio.audit)]

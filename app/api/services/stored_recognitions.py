@@ -12,6 +12,7 @@ from app.api.http.problems import ProblemError
 from app.api.http.schemas.gestures import GestureTrial, RecognitionRequest, RecognitionView
 from app.api.services.clip_responses import shows_pictures
 from app.api.services.demonstration_sources import (
+    Demonstrations,
     LeftOut,
     OwnDemonstrations,
     count_triggers_in_clip,
@@ -135,14 +136,16 @@ def load_context(record: store.RecognitionRecord, studio: Studio) -> Recognition
 
 
 def locate_cuts(
-    studio: Studio, language: Language, counterfactuals: Iterable[Counterfactual]
+    demonstrations: Demonstrations,
+    language: Language,
+    counterfactuals: Iterable[Counterfactual],
 ) -> Iterator[Counterfactual]:
     """Yield the counterfactuals, of every cut demonstration with its clip and the range of it.
 
     A cut is left out where the clip of the demonstration is not known, or where it is not the
     gesture's first one, which alone can be replaced.
     """
-    sources = studio.demonstrations.find(language)
+    sources = demonstrations.find(language)
     for found in counterfactuals:
         change = found.change
         if change.kind != "demonstration_cut":
@@ -152,7 +155,7 @@ def locate_cuts(
         source = sources[values["label"]][0] if values["demonstration"] == 0 else None
         if source is None:
             continue
-        begin = demonstration_at(studio.clips, source, language.trigger).start
+        begin = demonstration_at(demonstrations.clips, source, language.trigger).start
         located = {
             "clip_id": source.clip_id,
             "clip_start": begin + values["start"],
@@ -213,14 +216,17 @@ def view_recognition(record: store.RecognitionRecord) -> RecognitionView:
 
 
 def write_notes(
-    studio: Studio, record: RecognitionRecord, language: Language, nearest: str | None = None
+    demonstrations: Demonstrations,
+    record: RecognitionRecord,
+    language: Language,
+    nearest: str | None = None,
 ) -> list[str]:
     """Return a sentence for the range, and for each demonstration of a gesture with a fault.
 
     Parameters
     ----------
-    studio
-        Running studio with the clips.
+    demonstrations
+        The demonstrations of languages, with the clips.
     record
         The recognition.
     language
@@ -230,10 +236,8 @@ def write_notes(
 
     """
     notes = []
-    trigger = language.trigger
-    if count := count_triggers_in_clip(
-        studio.clips, record.clip_id, record.start, record.end, trigger
-    ):
+    trigger, where = language.trigger, (record.clip_id, record.start, record.end)
+    if count := count_triggers_in_clip(demonstrations.clips, *where, trigger):
         between = "salutes" if trigger.start is None else "poses"
         contained = describe_count(trigger, count)
         notes.append(
@@ -241,7 +245,7 @@ def write_notes(
             f"between the {between}."
         )
     if nearest is not None:
-        for source in studio.demonstrations.view(language).get(nearest, []):
+        for source in demonstrations.view(language).get(nearest, []):
             if source is not None and source.faults:
                 notes.append(source.faults[0].sentence)
     return notes

@@ -137,7 +137,7 @@ def show_gesture(
         sentence=why.sentence,
         details=list(why.details),
         causes=list(why.causes),
-        notes=[] if why.right else write_notes(studio, record, language),
+        notes=[] if why.right else write_notes(studio.demonstrations, record, language),
         record=next(each for each in records if each.diver == take.diver),
     )
 

@@ -86,9 +86,11 @@ def explain_recognition(
     response.headers["Cache-Control"] = "private, max-age=60"
     explanation = explain(context, meant)
     nearest = None if explanation.right else explanation.nearest
-    notes = write_notes(studio, record, context.language, nearest)
+    notes = write_notes(studio.demonstrations, record, context.language, nearest)
     notes = [note for note in notes if note != explanation.sentence]
-    located = tuple(locate_cuts(studio, context.language, explanation.counterfactuals))
+    located = tuple(
+        locate_cuts(studio.demonstrations, context.language, explanation.counterfactuals)
+    )
     content = dict(explanation) | {"counterfactuals": located}
     return ExplanationView(id=record.id, **content, notes=notes)
 

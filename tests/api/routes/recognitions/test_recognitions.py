@@ -130,13 +130,13 @@ def test_a_cut_of_a_demonstration_is_told_with_its_clip(
         margin=0.1,
         effect=None,
     )
-    (found,) = locate_cuts(studio, language, [cut])
+    (found,) = locate_cuts(studio.demonstrations, language, [cut])
     told = found.change.to_dict()
     assert told["clip_id"] == circle_clip
     assert told["clip_end"] - told["clip_start"] == pytest.approx(0.8)
     assert found.change.words == cut.change.words
     later = Intervention("demonstration_cut", 0.5, {**values, "demonstration": 1})
-    assert list(locate_cuts(studio, language, [replace(cut, change=later)])) == []
+    assert list(locate_cuts(studio.demonstrations, language, [replace(cut, change=later)])) == []
 
 
 def test_a_recognition_is_explained_by_what_was_meant(
