@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import asyncio
+import threading
 from collections.abc import Callable, Coroutine
 from functools import partial, wraps
 from inspect import Parameter, signature
 from typing import Any, TypeVar
 
-from starlette.requests import Request
+from starlette.requests import ClientDisconnect, Request
 
-from app.api.http.connection import compute_while_connected
+from app.api.http.connection import while_connected
 from app.api.jobs.job import compute_in_place
 
 MOST_COMPUTATIONS = 2
@@ -83,13 +84,19 @@ def _limited(
 
     @wraps(route)
     async def limited(*, connection: Request, **given: Any) -> Made:
-        def compute(advance: Callable[[], None]) -> Made:
-            return route(**given, **({"advance": advance} if has_steps else {}))
+        left = threading.Event()
 
+        def advance() -> None:
+            if left.is_set():
+                raise ClientDisconnect
+
+        steps = {"advance": advance} if has_steps else {}
         places = places_of(connection.app.state.studio.turns)
-        if goes_on:
-            return await compute_in_place(places, partial(route, **given))
-        return await compute_while_connected(connection, places, compute)
+        computing = compute_in_place(places, partial(route, **given, **steps))
+        try:
+            return await (computing if goes_on else while_connected(connection, computing))
+        finally:
+            left.set()
 
     asked = Parameter("connection", Parameter.KEYWORD_ONLY, annotation=Request)
     limited.__signature__ = signature(route).replace(  # type: ignore[attr-defined]

@@ -130,11 +130,6 @@ class Studio:
             if told is None:
                 self.extractions.look()
 
-    async def stop_soon(self) -> None:
-        """Cancel the jobs that somebody waits for, and end the event streams."""
-        await self.runner.stop()
-        self.broadcast.close()
-
     def keep_within(self, quota: store.Quota, keep: Callable[[], Stored]) -> Stored:
         """Store something by `keep`; if need be, purge first what its owner deleted.
 
