@@ -16,7 +16,7 @@ from app.api.http.schemas.values import Body, View
 from app.api.ingest.intake import SenderQuota, inspect, require_place_in_queue, require_quota, store
 from app.api.ingest.multipart import display_name
 from app.api.services.language_documents import draft_of
-from app.api.services.language_responses import announce, save_language
+from app.api.services.language_responses import add_language
 from app.api.services.running_studio import CurrentStudio, SampleLibrary
 from app.api.services.sample_library import SEEDED
 
@@ -91,5 +91,4 @@ def add_sample_language(
     if language is None:
         raise ProblemError(404, "not_found", f"there is no sample language {chosen.name!r}")
     draft = draft_of(language, SEEDED)
-    state = save_language(studio, quota, draft, language.revision, sample=chosen.name)
-    return announce(studio, state, response)
+    return add_language(studio, quota, draft, language.revision, response, chosen.name)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Callable, Sequence
 from dataclasses import replace
+from functools import partial
 from itertools import zip_longest
 from urllib.parse import urlencode
 
@@ -48,13 +49,17 @@ def save_revision(
     )
 
 
-def save_language(
-    studio: Studio, quota: Quota, draft: Draft, revision: int = 1, *, sample: str | None = None
-) -> LanguageState:
-    """Store a new language; errors as `LanguageStore.create`."""
-    return studio.keep_within(
-        quota, lambda: studio.languages.create(draft, revision, sample=sample, quota=quota)
-    )
+def add_language(
+    studio: Studio,
+    quota: Quota,
+    draft: Draft,
+    revision: int,
+    response: Response,
+    sample: str | None = None,
+) -> LanguageView:
+    """Store a new language, publish it and answer with it; errors as `LanguageStore.create`."""
+    create = partial(studio.languages.create, draft, revision, sample=sample, quota=quota)
+    return announce(studio, studio.keep_within(quota, create), response)
 
 
 def announce(studio: Studio, state: LanguageState, response: Response) -> LanguageView:

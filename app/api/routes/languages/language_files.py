@@ -18,7 +18,7 @@ from app.api.ingest.intake import SenderQuota
 from app.api.ingest.multipart import receive_body
 from app.api.routes.asked_revisions import AskedRevision, CurrentRevision
 from app.api.services.language_documents import LONGEST_NAME
-from app.api.services.language_responses import announce, save_language
+from app.api.services.language_responses import add_language
 from app.api.services.limited_routes import computed, computed_briefly
 from app.api.services.running_studio import CurrentStudio, Studio
 from app.api.workers.tasks import Import, ImportedLanguage, read_language
@@ -156,8 +156,7 @@ def _create(
     studio: Studio, quota: Quota, found: ImportedLanguage, response: Response
 ) -> LanguageView:
     read = found.model_dump(exclude={"revision"}) | {"name": found.name[:LONGEST_NAME]}
-    draft = Draft(**read)
-    return announce(studio, save_language(studio, quota, draft, found.revision), response)
+    return add_language(studio, quota, Draft(**read), found.revision, response)
 
 
 @router.get(

@@ -22,12 +22,7 @@ from app.api.http.schemas.values import Body, Identifier, Seconds, View
 from app.api.ingest.intake import SenderQuota
 from app.api.routes.asked_revisions import CurrentEdit, CurrentRevision
 from app.api.services.language_documents import draft_of, name_of_copy
-from app.api.services.language_responses import (
-    announce,
-    answer,
-    save_language,
-    view_summary,
-)
+from app.api.services.language_responses import add_language, announce, answer, view_summary
 from app.api.services.limited_routes import computed_briefly, edited
 from app.api.services.recording_cache import recording_of
 from app.api.services.running_studio import CurrentStudio, Languages
@@ -59,8 +54,7 @@ def create_language(
     _require_readable(draft.name, studio.languages)
     language = Language(name=draft.name, author=draft.author)
     made = draft_of(language, "New language")
-    state = save_language(studio, quota, made, language.revision)
-    return announce(studio, state, response)
+    return add_language(studio, quota, made, language.revision, response)
 
 
 @router.get(
@@ -124,7 +118,7 @@ def duplicate_language(
     name = name_of_copy(original.name, taken)
     copy = replace(original, name=name, created=None, revision=1)
     change = f"Copy of {original.name}, revision {asked.state.revision.revision}"
-    return announce(studio, save_language(studio, quota, draft_of(copy, change)), response)
+    return add_language(studio, quota, draft_of(copy, change), copy.revision, response)
 
 
 @router.delete("/{language_id}", status_code=204, responses=problem_responses(404, 412))
