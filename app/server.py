@@ -49,8 +49,7 @@ from app.api.observation.heap import share_arenas
 from app.api.observation.logs import set_up
 from app.api.observation.metrics import Metrics
 from app.api.routes import events, invited, samples, server_state
-from app.api.routes.administration import audit, sign_in
-from app.api.routes.administration import metrics as metrics_routes
+from app.api.routes.administration import administration
 from app.api.routes.clips import (
     clip_lists,
     clips,
@@ -167,15 +166,14 @@ def _build_routes() -> tuple[BaseRoute, ...]:
         recognitions.router,
         samples.router,
         events.router,
-        sign_in.router,
-        audit.router,
+        administration.router,
         workspaces.router,
         live.router,
     ):
         api.include_router(router)
     every.include_router(api)
     every.include_router(server_state.router, include_in_schema=False)
-    every.include_router(metrics_routes.router)
+    every.include_router(administration.scraped)
     every.include_router(relay.router)
     return tuple(every.routes)
 

@@ -20,9 +20,10 @@ from app.api.services.identities import identity_of
 from app.api.services.running_studio import Studio
 from app.api.workers.tasks import Join
 from app.api.workers.worker_messages import Failed, Probed
+from app.api.workers.worker_processes import Workers
 from app.clip_sources import ReadOptions, sources_of_upload, supported_kinds
 from app.recognition.recording.file_kinds import HEAD_BYTES, find_file_kind
-from app.store import Clip, Quota, Upload
+from app.store import Clip, Quota, QuotaStore, Upload
 
 UNSUPPORTED, STORAGE_UNAVAILABLE = "unsupported_media_type", "storage_unavailable"
 
@@ -100,7 +101,7 @@ async def joined(
         yield partial
         return
     # One at a time: the next one looks at what this one leaves of the disk.
-    async with studio.joining:
+    async with studio.turns.joins:
         uploads = await run_in_threadpool(studio.uploads.active)
         others = [each for each in uploads if each.path != partial]
         size, reserved = partial.stat().st_size, bytes_to_come(others)
@@ -114,7 +115,7 @@ async def joined(
 
 async def inspect(
     partial: Path,
-    studio: Studio,
+    workers: Workers,
     *,
     name: str,
     fields: UploadFields | None = None,
@@ -126,8 +127,8 @@ async def inspect(
     ----------
     partial
         The file.
-    studio
-        Starts the process that probes it.
+    workers
+        Start the process that probes it.
     name
         The name to show.
     fields
@@ -153,7 +154,7 @@ async def inspect(
         if given.topic is not None and not source.has_topics:
             continue
         options = source.upload_options(head, name, wanted)
-        probed = await studio.workers.probe(source, partial, options)
+        probed = await workers.probe(source, partial, options)
         if isinstance(probed, Probed):
             clip = Clip(
                 name=name,
@@ -259,7 +260,7 @@ SenderQuota = Annotated[Quota, Depends(quota_of)]
 """Type of a route's parameter that receives the quota of the request's sender."""
 
 
-async def require_quota(quota: Quota, studio: Studio, size: int) -> None:
+async def require_quota(quota: Quota, quotas: QuotaStore, size: int) -> None:
     """Refuse, early, a clip of at least `size` bytes that exceeds its sender's quota.
 
     The quota is checked again when the clip or its upload is stored.
@@ -271,5 +272,5 @@ async def require_quota(quota: Quota, studio: Studio, size: int) -> None:
 
     """
     if quota.bytes or quota.clips:
-        kept = await run_in_threadpool(studio.quotas.usage, quota.owner, deleted=False)
+        kept = await run_in_threadpool(quotas.usage, quota.owner, deleted=False)
         quota.require(kept, size, clips=1)

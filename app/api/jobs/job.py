@@ -164,6 +164,11 @@ class JobRunner:
     metrics
         Measures the duration of jobs.
 
+    Attributes
+    ----------
+    stopped
+        Whether the server is about to stop, so that new jobs are refused.
+
     """
 
     def __init__(self, broadcast: Broadcast, metrics: Metrics | None = None) -> None:
@@ -171,7 +176,7 @@ class JobRunner:
         self._metrics = metrics or Metrics()
         self._runs: dict[str, _Run] = {}
         self._elsewhere: dict[str, Progress] = {}
-        self._closed = False
+        self.stopped = False
 
     async def run(self, job: Job[Result]) -> Result:
         """Run a job, or wait for the running one of the same key, and return its result.
@@ -230,12 +235,12 @@ class JobRunner:
 
     async def stop(self) -> None:
         """Cancel the jobs that are not resumable, and refuse new ones."""
-        self._closed = True
+        self.stopped = True
         for key in [key for key, run in self._runs.items() if not run.job.resumable]:
             await self.cancel(key)
 
     def _start(self, job: Job[Any]) -> None:
-        if self._closed and not job.resumable:
+        if self.stopped and not job.resumable:
             raise JobCancelled
         run = self._runs[job.key] = _Run(job, self._broadcast)
         run.task = asyncio.create_task(self._observe(job, run))

@@ -8,9 +8,10 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
-from collections.abc import AsyncIterator
+from collections.abc import AsyncIterator, Callable
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import asynccontextmanager
+from functools import partial
 from typing import Annotated, Final, Literal
 
 from fastapi import APIRouter, WebSocket
@@ -26,13 +27,15 @@ from app.api.http.websockets import (
     until_one_ends,
 )
 from app.api.live.frame_pipeline import Frame, FramePipeline, Recognized
-from app.api.services.running_studio import CurrentStudio, Studio
+from app.api.services.running_studio import Languages, ServerSettings
+from app.api.services.stored_languages import recognizer_of
 from app.recognition import OsgError, Recognizer
 from app.recognition.errors import EstimatorError, ModelError, VideoError
 from app.recognition.estimation.estimator import PoseEstimator
 from app.recognition.estimation.factory import create_estimator
+from app.recognition.estimation.water import WaterCorrection
 from app.recognition.gestures.profile import ProfileName
-from app.store import Invitation, NotFound
+from app.store import Invitation, LanguageStore, NotFound
 
 MESSAGE_TOO_BIG, INTERNAL_ERROR, TRY_AGAIN_LATER = 1009, 1011, 1013
 """Websocket close codes (RFC 6455, 7.4.1, and its registry)."""
@@ -98,7 +101,7 @@ router = APIRouter(tags=["live"])
 
 @router.websocket("/live")
 @router.websocket("/invited/live")
-async def watch_camera(browser: WebSocket, studio: CurrentStudio) -> None:
+async def watch_camera(browser: WebSocket, languages: Languages, settings: ServerSettings) -> None:
     """Take a camera's frames, and send what is found in them.
 
     For an invited person this is when a take begins and ends, and not what is read in it.
@@ -116,8 +119,9 @@ async def watch_camera(browser: WebSocket, studio: CurrentStudio) -> None:
         full = "another person's take is looked at"
     # Only an accepted websocket can be closed with a reason.
     await browser.accept(None if invitation is None else INVITED_PROTOCOL)
+    create = partial(_View, browser, languages, settings.water, language_id)
     try:
-        async with _place(places, full), _view(browser, studio, language_id) as view:
+        async with _place(places, full), _view(create) as view:
             try:
                 await asyncio.wait_for(view.run(), seconds)
             except TimeoutError as error:
@@ -141,14 +145,12 @@ async def _place(places: asyncio.Semaphore, full: str) -> AsyncIterator[None]:
 
 
 @asynccontextmanager
-async def _view(
-    browser: WebSocket, studio: Studio, language_id: str | None
-) -> AsyncIterator[_View]:
+async def _view(create: Callable[[PoseEstimator], _View]) -> AsyncIterator[_View]:
     try:
         estimator = await run_in_threadpool(create_estimator)
     except (ModelError, EstimatorError) as error:
         raise _End(INTERNAL_ERROR, str(error)) from error
-    view = _View(browser, studio, estimator, language_id)
+    view = create(estimator)
     try:
         yield view
     finally:
@@ -161,17 +163,18 @@ class _View:
     def __init__(
         self,
         browser: WebSocket,
-        studio: Studio,
-        estimator: PoseEstimator,
+        languages: LanguageStore,
+        water: WaterCorrection,
         language_id: str | None,
+        estimator: PoseEstimator,
     ) -> None:
         self._browser = browser
-        self._studio = studio
+        self._languages = languages
         self._invited = language_id is not None
         self._wanted: Listen | None = None
         if language_id is not None:
             self._wanted = Listen(do="listen", language_id=language_id)
-        self._pipeline = FramePipeline(estimator, studio.settings.water, self._recognizer)
+        self._pipeline = FramePipeline(estimator, water, self._recognizer)
         self._thread = ThreadPoolExecutor(1, "live")
         self._newest: Frame | None = None
         self._arrived = asyncio.Event()
@@ -258,7 +261,7 @@ class _View:
         if wanted is None or wanted.language_id is None:
             return None
         try:
-            state = self._studio.languages.get(wanted.language_id)
+            state = self._languages.get(wanted.language_id)
         except NotFound as error:
             raise OsgError(f"{error}; choose another language") from error
-        return self._studio.recognizer(state, wanted.profile)
+        return recognizer_of(state, wanted.profile)

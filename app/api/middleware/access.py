@@ -314,7 +314,10 @@ class TokenRequired:
             client = scope["client"][0] if scope.get("client") else "local"
             waits = self._guesses.too_many(client)
             self._guesses.add(client)
-            return _too_many(GUESS_SECONDS, "a minute") if waits else _not_invited()
+            if waits:
+                return _too_many(GUESS_SECONDS, "a minute")
+            detail = "this is no invitation; open the whole link, or scan its code again"
+            return ProblemError(401, "invitation_unknown", detail, headers=CHALLENGE)
         owner = self._identities.of_inviter(found.owner, found.created)
         if found.closed or owner is None:
             return problem_of(closed(found.closed or "withdrawn"))
@@ -372,11 +375,6 @@ def _too_many(seconds: float, words: str) -> ProblemError:
     detail = f"too many wrong tokens came from this address; try again in {words}"
     again = {"Retry-After": f"{seconds:.0f}"}
     return ProblemError(429, "too_many_guesses", detail, headers=again)
-
-
-def _not_invited() -> ProblemError:
-    detail = "this is no invitation; open the whole link, or scan its code again"
-    return ProblemError(401, "invitation_unknown", detail, headers=CHALLENGE)
 
 
 def _page_or(scope: Scope, problem: ProblemError) -> ProblemError | Response:

@@ -101,10 +101,11 @@ class StudioServer(uvicorn.Server):
         return await super().on_tick(counter)
 
     async def shutdown(self, sockets: Any = None) -> None:
-        """Cancel jobs, end open requests, and close the connections."""
+        """Cancel jobs, end event streams and open requests, and close the connections."""
         studio: Studio | None = getattr(self._app.state, "studio", None)
         if studio is not None:
-            await studio.stop_soon()
+            await studio.runner.stop()
+            studio.broadcast.close()
         requests: OpenRequests = self._app.state.requests
         await requests.end()
         await asyncio.sleep(FLUSH_SECONDS)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import time
 from collections.abc import Mapping
+from functools import partial
 
 from prometheus_client import CollectorRegistry, Counter, Gauge, Histogram, generate_latest
 from prometheus_client.exposition import CONTENT_TYPE_PLAIN_0_0_4
@@ -38,31 +39,25 @@ class Metrics:
 
     def __init__(self) -> None:
         registry = self._registry = CollectorRegistry()
-        self.requests = Counter(
-            "osg_requests", "Requests answered", ["method", "route", "status"], registry=registry
-        )
-        self.request_seconds = Histogram(
+        count, measure = partial(Counter, registry=registry), partial(Histogram, registry=registry)
+        self.requests = count("osg_requests", "Requests answered", ["method", "route", "status"])
+        self.request_seconds = measure(
             "osg_request_seconds",
             "Seconds until the answer began",
             ["method", "route"],
             buckets=REQUEST_SECONDS,
-            registry=registry,
         )
-        self.jobs = Histogram(
+        self.jobs = measure(
             "osg_job_seconds",
             "Seconds of a job by its kind and how it ended",
             ["kind", "outcome"],
             buckets=JOB_SECONDS,
-            registry=registry,
         )
-        self.stalls = Counter(
-            "osg_worker_stalls", "Worker processes ended for their silence", registry=registry
-        )
-        self.loop_lag = Histogram(
+        self.stalls = count("osg_worker_stalls", "Worker processes ended for their silence")
+        self.loop_lag = measure(
             "osg_event_loop_lag_seconds",
             "Seconds by which the event loop was late",
             buckets=LAG_SECONDS,
-            registry=registry,
         )
         self._gauges: dict[str, Gauge] = {}
 

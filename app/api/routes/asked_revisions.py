@@ -12,12 +12,12 @@ from fastapi import Depends, Response
 from app.api.http.revisions import ExpectedRevision, Revision
 from app.api.http.schemas.languages import LanguageView
 from app.api.ingest.intake import SenderQuota
-from app.api.services.demonstration_sources import trigger_of
 from app.api.services.language_responses import announce, save_revision
-from app.api.services.running_studio import CurrentStudio, Studio
+from app.api.services.running_studio import CurrentStudio, Languages, Studio
+from app.api.services.stored_languages import language_of, trigger_of
 from app.recognition import Language
 from app.recognition.triggers.trigger import Trigger
-from app.store import LanguageState, Quota
+from app.store import LanguageState, LanguageStore, Quota
 
 
 @dataclass(frozen=True)
@@ -26,8 +26,8 @@ class AskedRevision:
 
     Attributes
     ----------
-    studio
-        Running studio.
+    languages
+        The store.
     language_id
         Id of the language.
     number
@@ -35,29 +35,36 @@ class AskedRevision:
 
     """
 
-    studio: Studio
+    languages: LanguageStore
     language_id: str
-    number: int | None
+    number: int | None = None
 
     @cached_property
     def state(self) -> LanguageState:
         """The revision as it is stored; NotFound without such a language or revision."""
-        return self.studio.languages.get(self.language_id, self.number)
+        return self.languages.get(self.language_id, self.number)
 
     @property
     def language(self) -> Language:
         """The language that it holds."""
-        return self.studio.language(self.state)
+        return language_of(self.state)
 
 
 async def _asked_of(
-    studio: CurrentStudio, language_id: str, revision: Revision = None
+    languages: Languages, language_id: str, revision: Revision = None
 ) -> AskedRevision:
-    return AskedRevision(studio, language_id, revision)
+    return AskedRevision(languages, language_id, revision)
+
+
+async def _newest_of(languages: Languages, language_id: str) -> AskedRevision:
+    return AskedRevision(languages, language_id)
 
 
 CurrentRevision = Annotated[AskedRevision, Depends(_asked_of)]
 """Type of a route's parameter that receives the revision that a request asks for."""
+
+NewestRevision = Annotated[AskedRevision, Depends(_newest_of)]
+"""The same where a request asks for a language, and always gets its newest revision."""
 
 
 @dataclass(frozen=True)
@@ -88,7 +95,7 @@ class LanguageEdit:
     @property
     def trigger(self) -> Trigger:
         """Trigger of the language's newest revision; NotFound without such a language."""
-        return trigger_of(self.studio, self.language_id)
+        return trigger_of(self.studio.languages, self.language_id)
 
     def save(self, words: str, change: Callable[[Language], Language]) -> LanguageState:
         """Store the revision that `change` makes of the newest one, with `words` for its history.

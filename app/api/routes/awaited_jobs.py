@@ -8,15 +8,14 @@ from fastapi import Request
 
 from app.api.http.connection import while_connected
 from app.api.http.problems import ProblemError
-from app.api.jobs.job import Job, JobCancelled
+from app.api.jobs.job import Job, JobCancelled, JobRunner
 from app.api.middleware.shutdown import stopping
-from app.api.services.running_studio import Studio
 
 Made = TypeVar("Made")
 
 
 async def await_job(
-    request: Request, studio: Studio, job: Job[Made], cancelled: ProblemError | None = None
+    request: Request, runner: JobRunner, job: Job[Made], cancelled: ProblemError | None = None
 ) -> Made:
     """Run a job, or join it, while the client waits; return what it made.
 
@@ -24,8 +23,8 @@ async def await_job(
     ----------
     request
         Request of the client.
-    studio
-        Running studio.
+    runner
+        Runs it.
     job
         The job.
     cancelled
@@ -40,8 +39,8 @@ async def await_job(
 
     """
     try:
-        return await while_connected(request, studio.runner.run(job))
+        return await while_connected(request, runner.run(job))
     except JobCancelled as error:
-        if cancelled is None or studio.stopping.is_set():
+        if cancelled is None or runner.stopped:
             raise stopping() from error
         raise cancelled from error

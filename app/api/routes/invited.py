@@ -27,9 +27,13 @@ from app.api.ingest.intake import (
 from app.api.ingest.multipart import Upload, display_name, file_form, least_size, receive_file
 from app.api.services.gesture_edits import gesture_in
 from app.api.services.invited_takes import Returned, answer_question, require_unshown
-from app.api.services.running_studio import CurrentStudio, Studio, computed_briefly, edited
+from app.api.services.limited_routes import computed_briefly, edited
+from app.api.services.running_studio import CurrentStudio, Invitations, Languages, ServerSettings
+from app.api.services.stored_languages import language_of
+from app.api.workers.worker_processes import Workers
 from app.recognition import Gesture
-from app.store import Invitation, require_open
+from app.settings import Settings
+from app.store import Invitation, LanguageStore, require_open
 from app.store.invitations import closed
 from app.store.models import VIDEO
 from app.ui.charts import data_url, mark_gesture
@@ -49,17 +53,17 @@ CurrentInvitation = Annotated[Invitation, Depends(_invitation_of)]
 @router.get("", responses=problem_responses(404, 429))
 @computed_briefly
 def get_invited_language(
-    studio: CurrentStudio, invitation: CurrentInvitation
+    languages: Languages, settings: ServerSettings, invitation: CurrentInvitation
 ) -> schemas.InvitedView:
     """Show the gestures of the language that one is invited to."""
-    language = studio.language(studio.languages.get(invitation.language_id))
+    language = language_of(languages.get(invitation.language_id))
     return schemas.InvitedView(
         id=invitation.id,
         language=language.name,
         trigger=language.trigger.kind,
         expires=invitation.expires,
         takes_left=max(0, invitation.most_takes - invitation.takes),
-        most_bytes=min(studio.settings.max_clip_bytes, schemas.MOST_TAKE_BYTES),
+        most_bytes=min(settings.max_clip_bytes, schemas.MOST_TAKE_BYTES),
         gestures=[_view(gesture) for gesture in language.gestures],
     )
 
@@ -84,19 +88,19 @@ async def send_take(
     `GET /invited/takes/{id}` tells which.
     """
     diver = diver.strip()
-    await run_in_threadpool(_require_wanted, studio, invitation, label, diver)
+    await run_in_threadpool(_require_wanted, studio.languages, invitation, label, diver)
     least = least_size(request)
     require_open(invitation, least)
     reserved = await require_place_in_queue(request, studio)
-    await require_quota(quota, studio, least)
+    await require_quota(quota, studio.quotas, least)
     with studio.clips.receiving() as received:
-        upload = await _receive_within(invitation, request, received, studio, reserved)
+        upload = await _receive_within(invitation, request, received, studio.settings, reserved)
         receive = studio.invitations.receive
         count = partial(receive, invitation.id, label=label, diver=diver, size=upload.size)
         # Counted before it is read, so that files that cannot be used are limited as well.
         take = await run_in_threadpool(count)
         try:
-            made = await _inspect_video(received, studio, upload)
+            made = await _inspect_video(received, studio.workers, upload)
         except ProblemError as error:
             await run_in_threadpool(studio.invitations.settle, take.id, "returned", error.detail)
             raise
@@ -112,10 +116,10 @@ async def send_take(
 
 @router.get("/takes/{take_id}", responses=problem_responses(404, 429))
 def get_take(
-    take_id: str, studio: CurrentStudio, invitation: CurrentInvitation
+    take_id: str, invitations: Invitations, invitation: CurrentInvitation
 ) -> schemas.InvitedTakeView:
     """Tell whether a take was added, why it was returned, or what is asked about it."""
-    return schemas.InvitedTakeView.of(studio.invitations.take(invitation.id, take_id))
+    return schemas.InvitedTakeView.of(invitations.take(invitation.id, take_id))
 
 
 @router.put("/takes/{take_id}/answer", responses=problem_responses(404, 429))
@@ -137,25 +141,25 @@ def answer_about_take(
 
 
 async def _receive_within(
-    invitation: Invitation, request: Request, received: Path, studio: Studio, reserved: int
+    invitation: Invitation, request: Request, received: Path, settings: Settings, reserved: int
 ) -> Upload:
     """Receive a file as `receive_file`; one that does not state its size ends at the limit."""
-    largest, left = studio.settings.max_clip_bytes, invitation.most_bytes - invitation.bytes
-    settings = studio.settings.model_copy(update={"max_clip_bytes": min(largest, left)})
+    largest, left = settings.max_clip_bytes, invitation.most_bytes - invitation.bytes
+    within = settings.model_copy(update={"max_clip_bytes": min(largest, left)})
     try:
-        return await receive_file(request, received, settings, reserved=reserved)
+        return await receive_file(request, received, within, reserved=reserved)
     except ProblemError as error:
         if error.code == "too_large" and left < largest:
             raise closed("used_up") from error
         raise
 
 
-async def _inspect_video(received: Path, studio: Studio, upload: Upload) -> Inspected:
+async def _inspect_video(received: Path, workers: Workers, upload: Upload) -> Inspected:
     """Probe a received file as `inspect`; refuse what is no video in a sentence for divers."""
     detail = f"{upload.name} is no video; record one, or choose another file"
     no_video = ProblemError(415, UNSUPPORTED, detail)
     try:
-        made = await inspect(received, studio, name=upload.name, one_take=True)
+        made = await inspect(received, workers, name=upload.name, one_take=True)
     except ProblemError as error:
         raise no_video if error.code == UNSUPPORTED else error from error
     if made.clip.source != VIDEO:
@@ -163,8 +167,10 @@ async def _inspect_video(received: Path, studio: Studio, upload: Upload) -> Insp
     return made
 
 
-def _require_wanted(studio: Studio, invitation: Invitation, label: str, diver: str) -> None:
-    language = studio.language(studio.languages.get(invitation.language_id))
+def _require_wanted(
+    languages: LanguageStore, invitation: Invitation, label: str, diver: str
+) -> None:
+    language = language_of(languages.get(invitation.language_id))
     try:
         require_unshown(gesture_in(language, label), diver)
     except Returned as error:

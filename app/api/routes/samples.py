@@ -16,8 +16,8 @@ from app.api.http.schemas.values import Body, View
 from app.api.ingest.intake import SenderQuota, inspect, require_place_in_queue, require_quota, store
 from app.api.ingest.multipart import display_name
 from app.api.services.language_documents import draft_of
-from app.api.services.language_responses import announce, save_language
-from app.api.services.running_studio import CurrentStudio
+from app.api.services.language_responses import add_language
+from app.api.services.running_studio import CurrentStudio, SampleLibrary
 from app.api.services.sample_library import SEEDED
 
 
@@ -49,9 +49,9 @@ router = APIRouter(prefix="/samples", tags=["samples"])
 
 
 @router.get("", responses=problem_responses())
-def list_samples(studio: CurrentStudio) -> list[SampleView]:
+def list_samples(samples: SampleLibrary) -> list[SampleView]:
     """List the sample clips."""
-    clips = studio.samples.clips()
+    clips = samples.clips()
     return [SampleView(name=name, size=file.stat().st_size) for name, file in clips.items()]
 
 
@@ -66,19 +66,19 @@ async def import_sample(
     sample = samples[chosen.name]
     size = sample.stat().st_size
     await require_place_in_queue(request, studio)
-    await require_quota(quota, studio, size)
+    await require_quota(quota, studio.quotas, size)
     with studio.clips.receiving() as partial:
         await run_in_threadpool(shutil.copyfile, sample, partial)
-        made = await inspect(partial, studio, name=display_name(sample.name))
+        made = await inspect(partial, studio.workers, name=display_name(sample.name))
         return await store(made, partial, studio, request)
 
 
 @router.get("/languages", responses=problem_responses())
-def list_sample_languages(studio: CurrentStudio) -> list[SampleLanguageView]:
+def list_sample_languages(samples: SampleLibrary) -> list[SampleLanguageView]:
     """List the sample languages, whether or not they are among the languages."""
     return [
         SampleLanguageView(name=name, title=language.name, labels=list(language.labels))
-        for name, language in studio.samples.languages().items()
+        for name, language in samples.languages().items()
     ]
 
 
@@ -91,5 +91,4 @@ def add_sample_language(
     if language is None:
         raise ProblemError(404, "not_found", f"there is no sample language {chosen.name!r}")
     draft = draft_of(language, SEEDED)
-    state = save_language(studio, quota, draft, language.revision, sample=chosen.name)
-    return announce(studio, state, response)
+    return add_language(studio, quota, draft, language.revision, response, chosen.name)

@@ -6,8 +6,9 @@ import hashlib
 import json
 import math
 from collections import defaultdict
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from functools import lru_cache
+from typing import TypeVar
 
 from app.api.http.schemas.clips import TakeView
 from app.api.http.schemas.gestures import (
@@ -17,8 +18,14 @@ from app.api.http.schemas.gestures import (
     SourceView,
 )
 from app.api.http.schemas.values import NONE_EXPECTED
-from app.api.services.recording_cache import RecordingFile, load_recording, whole_recording
-from app.api.services.running_studio import Studio
+from app.api.services.recording_cache import (
+    RecordingFile,
+    load_recording,
+    recording_file,
+    recording_of,
+    whole_recording,
+)
+from app.api.services.stored_languages import language_of
 from app.recognition import Gesture, Language, OsgError, Recognizer
 from app.recognition.explanation.demonstration_faults import (
     ClipOutline,
@@ -29,7 +36,7 @@ from app.recognition.recording.clip_range import ClipRange
 from app.recognition.recording.segmentation import find_brackets, takes_in
 from app.recognition.spotting import Spotter
 from app.recognition.triggers.trigger import SALUTE, Trigger
-from app.store import DemonstrationSource, JobStatus, LanguageState
+from app.store import ClipStore, DemonstrationSource, JobStatus, LanguageState, SourceStore
 
 CACHED_TAKES = 64
 """Number of clips whose takes are cached: spotting takes a fifth of a clip's duration, and trimming
@@ -47,47 +54,115 @@ LeftOut = tuple[tuple[str, int], ...]
 """Label and number of demonstrations that the language is read without."""
 
 
-def keep_source(
-    studio: Studio,
-    state: LanguageState,
-    label: str,
-    where: NewDemonstration,
-    demonstration: ClipRange,
-    *,
-    index: int = 0,
-) -> None:
-    """Store the source of a gesture's demonstration that was just saved."""
-    saved = studio.language(state).gesture(label).single_demonstrations()[index]
-    if (key := _key(saved)) is None:
-        return
-    start = demonstration.start if where.start is None else where.start
-    end = demonstration.end if where.end is None else where.end
-    if where.start is None and where.end is None:
-        # A request without a range means the clip's only take, from salute to salute.
-        trigger = studio.language(state).trigger
-        for take in find_brackets(studio.recording(where.clip_id), trigger):
-            start, end = take.start, take.end
-    source = DemonstrationSource(
-        trajectory=key,
-        clip_id=where.clip_id,
-        start=start,
-        end=end,
-        keep_transit=where.keep_transit,
-    )
-    studio.sources.keep(source)
+Told = TypeVar("Told")
 
 
-def sources_in(studio: Studio, language: Language) -> dict[str, list[SourceView | None]]:
-    """Return the known sources of demonstrations by label; see `find_sources`."""
-    return {
-        label: [
-            None if source is None else _view(studio, source, shown, language.trigger)
-            for source, shown in zip(
-                row, language.gesture(label).single_demonstrations(), strict=True
+class Demonstrations:
+    """The demonstrations of languages, with the clips that they come from where these are known.
+
+    Parameters
+    ----------
+    clips, sources
+        The store.
+
+    Attributes
+    ----------
+    clips
+        The store of the clips.
+
+    """
+
+    def __init__(self, clips: ClipStore, sources: SourceStore) -> None:
+        self.clips, self._sources = clips, sources
+
+    def keep(
+        self,
+        state: LanguageState,
+        label: str,
+        where: NewDemonstration,
+        demonstration: ClipRange,
+        *,
+        index: int = 0,
+    ) -> None:
+        """Store the source of a gesture's demonstration that was just saved."""
+        language = language_of(state)
+        key = _key(language.gesture(label).single_demonstrations()[index])
+        if key is None:
+            return
+        start = demonstration.start if where.start is None else where.start
+        end = demonstration.end if where.end is None else where.end
+        if where.start is None and where.end is None:
+            # A request without a range means the clip's only take, from salute to salute.
+            for take in find_brackets(recording_of(self.clips, where.clip_id), language.trigger):
+                start, end = take.start, take.end
+        source = DemonstrationSource(
+            trajectory=key,
+            clip_id=where.clip_id,
+            start=start,
+            end=end,
+            keep_transit=where.keep_transit,
+        )
+        self._sources.keep(source)
+
+    def find(self, language: Language) -> dict[str, list[DemonstrationSource | None]]:
+        """Return the source of every demonstration of a language by label; None if not known."""
+        return self.find_by_digests(digests_of(language))
+
+    def find_by_digests(
+        self, digests: dict[str, list[str | None]]
+    ) -> dict[str, list[DemonstrationSource | None]]:
+        """Return the same by what `digests_of` returns of the language."""
+        known = self._sources.of({key for row in digests.values() for key in row if key})
+        return {
+            label: [None if key is None else known.get(key) for key in row]
+            for label, row in digests.items()
+        }
+
+    def clips_of(self, language: Language) -> set[str]:
+        """Return the ids of the clips that a language's demonstrations come from."""
+        rows = self.find(language).values()
+        return {source.clip_id for row in rows for source in row if source is not None}
+
+    def view(self, language: Language) -> dict[str, list[SourceView | None]]:
+        """Return the known sources of demonstrations by label, as the API shows them."""
+        trigger = language.trigger
+
+        def view(source: DemonstrationSource, shown: Gesture) -> SourceView:
+            faults = view_faults(self.clips, source, shown, trigger)
+            where = source.clip_id, source.start, source.end
+            return SourceView(
+                **source.model_dump(exclude={"trajectory"}),
+                salutes=count_triggers_in_clip(self.clips, *where, trigger),
+                fault=faults[0].words if faults else None,
+                faults=faults,
             )
-        ]
-        for label, row in find_sources(studio, language).items()
-    }
+
+        return self._tell(language, view, None)
+
+    def find_faults(self, language: Language) -> dict[str, list[tuple[DemonstrationFault, ...]]]:
+        """Return by label the faults of each demonstration; none where its clip is not known."""
+
+        def find(source: DemonstrationSource, shown: Gesture) -> tuple[DemonstrationFault, ...]:
+            return faults_of_source(self.clips, source, shown, language.trigger)
+
+        return self._tell(language, find, ())
+
+    def _tell(
+        self,
+        language: Language,
+        tell: Callable[[DemonstrationSource, Gesture], Told],
+        unknown: Told,
+    ) -> dict[str, list[Told]]:
+        """Return by label what is told of each source and its demonstration."""
+        return {
+            label: [
+                unknown if source is None else tell(source, shown)
+                for source, shown in zip(
+                    row, language.gesture(label).single_demonstrations(), strict=True
+                )
+            ]
+            for label, row in self.find(language).items()
+        }
 
 
 def digests_of(language: Language) -> dict[str, list[str | None]]:
@@ -98,28 +173,13 @@ def digests_of(language: Language) -> dict[str, list[str | None]]:
     }
 
 
-def find_sources(studio: Studio, language: Language) -> dict[str, list[DemonstrationSource | None]]:
-    """Return the source of every demonstration of a language by label; None if not known."""
-    return _find_by_digests(studio, digests_of(language))
-
-
-def _find_by_digests(
-    studio: Studio, keys: dict[str, list[str | None]]
-) -> dict[str, list[DemonstrationSource | None]]:
-    known = studio.sources.of({key for row in keys.values() for key in row if key is not None})
-    return {
-        label: [None if key is None else known.get(key) for key in row]
-        for label, row in keys.items()
-    }
-
-
 class OwnDemonstrations:
     """The demonstrations of a language that are known takes as well.
 
     Parameters
     ----------
-    studio
-        Running studio with the clips.
+    demonstrations
+        Knows their sources.
     language
         The language, with the change of the trial.
     trial
@@ -128,12 +188,12 @@ class OwnDemonstrations:
     """
 
     def __init__(
-        self, studio: Studio, language: Language, trial: GestureTrial | None = None
+        self, demonstrations: Demonstrations, language: Language, trial: GestureTrial | None = None
     ) -> None:
         self._language = language
         self._shown = digests_of(language)
         self._of_clip = defaultdict[str, list[tuple[str, int, float, float]]](list)
-        for label, row in _find_by_digests(studio, self._shown).items():
+        for label, row in demonstrations.find_by_digests(self._shown).items():
             for number, source in enumerate(row):
                 if source is not None:
                     place = (label, number, source.start, source.end)
@@ -172,26 +232,8 @@ class OwnDemonstrations:
         return own <= len(self._language.gesture(expected).further)
 
 
-def list_sources(studio: Studio, language: Language) -> list[DemonstrationSource]:
-    """Return the known sources of a language's demonstrations."""
-    rows = find_sources(studio, language).values()
-    return [source for row in rows for source in row if source is not None]
-
-
-def _view(
-    studio: Studio, source: DemonstrationSource, shown: Gesture, trigger: Trigger
-) -> SourceView:
-    faults = view_faults(studio, source, shown, trigger)
-    return SourceView(
-        **source.model_dump(exclude={"trajectory"}),
-        salutes=count_triggers_in_clip(studio, source.clip_id, source.start, source.end, trigger),
-        fault=faults[0].words if faults else None,
-        faults=faults,
-    )
-
-
 def view_faults(
-    studio: Studio,
+    clips: ClipStore,
     source: DemonstrationSource | NewDemonstration,
     shown: Gesture,
     trigger: Trigger,
@@ -199,7 +241,7 @@ def view_faults(
     """Return the faults of a demonstration as the API shows them; see `faults_of_source`."""
     return [
         DemonstrationFaultView(**vars(fault), sentence=fault.describe(shown.label))
-        for fault in faults_of_source(studio, source, shown, trigger)
+        for fault in faults_of_source(clips, source, shown, trigger)
     ]
 
 
@@ -215,15 +257,15 @@ def _key(gesture: Gesture) -> str | None:
 
 
 def count_triggers_in_clip(
-    studio: Studio, clip_id: str, start: float, end: float, trigger: Trigger = SALUTE
+    clips: ClipStore, clip_id: str, start: float, end: float, trigger: Trigger
 ) -> int:
     """Return how many triggers a range of a clip contains; 0 while its poses are not extracted."""
-    file = _find_recording(studio, clip_id)
+    file = _find_recording(clips, clip_id)
     return 0 if file is None else _outline_of(file, trigger).count_triggers(start, end)
 
 
 def faults_of_source(
-    studio: Studio,
+    clips: ClipStore,
     source: DemonstrationSource | NewDemonstration,
     gesture: Gesture,
     trigger: Trigger,
@@ -232,8 +274,8 @@ def faults_of_source(
 
     Parameters
     ----------
-    studio
-        Running studio with the clips.
+    clips
+        The store of the clips.
     source
         Where the demonstration comes from.
     gesture
@@ -242,7 +284,7 @@ def faults_of_source(
         The language's.
 
     """
-    file = _find_recording(studio, source.clip_id)
+    file = _find_recording(clips, source.clip_id)
     if file is None:
         return ()
     counts = gesture.switches.hand_shape == "on"
@@ -250,26 +292,11 @@ def faults_of_source(
     return _faults_of(file, where, trigger, gesture.salient, counts)
 
 
-def faults_of_language(
-    studio: Studio, language: Language
-) -> dict[str, list[tuple[DemonstrationFault, ...]]]:
-    """Return by label the faults of each demonstration of a language; none where not known."""
-    return {
-        label: [
-            () if source is None else faults_of_source(studio, source, shown, language.trigger)
-            for source, shown in zip(
-                row, language.gesture(label).single_demonstrations(), strict=True
-            )
-        ]
-        for label, row in find_sources(studio, language).items()
-    }
-
-
-def _find_recording(studio: Studio, clip_id: str) -> RecordingFile | None:
+def _find_recording(clips: ClipStore, clip_id: str) -> RecordingFile | None:
     """Return the file of a clip's recording; None while its poses are not extracted."""
-    if studio.clips.get(clip_id).job.status != JobStatus.DONE:
+    if clips.get(clip_id).job.status != JobStatus.DONE:
         return None
-    return whole_recording(studio.clips.recording(clip_id))
+    return whole_recording(clips.recording(clip_id))
 
 
 @lru_cache(CACHED_CLIPS)
@@ -301,22 +328,8 @@ def _faults_of(
         return ()
 
 
-def trigger_of(studio: Studio, language_id: str | None) -> Trigger:
-    """Return the trigger of a language's newest revision; without a language, the salute.
-
-    Raises
-    ------
-    NotFound
-        When there is no such language.
-
-    """
-    if language_id is None:
-        return SALUTE
-    return studio.language(studio.languages.get(language_id)).trigger
-
-
 def find_takes(
-    studio: Studio, clip_id: str, state: LanguageState | None, *, so_far: bool = False
+    clips: ClipStore, clip_id: str, state: LanguageState | None, *, so_far: bool = False
 ) -> tuple[TakeView, ...]:
     """Return the takes of a clip by a language's trigger; without a trigger, the spotted gestures.
 
@@ -325,11 +338,11 @@ def find_takes(
     Raises
     ------
     NotFound, ProblemError
-        As `Studio.recording_file`.
+        As `recording_file`.
 
     """
-    recording = studio.recording_file(clip_id, so_far=so_far)
-    trigger = SALUTE if state is None else studio.language(state).trigger
+    recording = recording_file(clips, clip_id, so_far=so_far)
+    trigger = SALUTE if state is None else language_of(state).trigger
     if state is not None and trigger.spots:
         takes = _spot(recording, state.revision.document)
     else:

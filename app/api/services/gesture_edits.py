@@ -12,7 +12,7 @@ from app.api.http.schemas.gestures import (
     GestureDraft,
     NewDemonstration,
 )
-from app.api.services.running_studio import Studio
+from app.api.services.recording_cache import recording_of
 from app.recognition import Gesture, GestureError, Language, PoseError, PoseSequence
 from app.recognition.errors import RangeError
 from app.recognition.gestures.switches import Switches
@@ -20,8 +20,8 @@ from app.recognition.poses.trajectory import Trajectory
 from app.recognition.preprocessing.repair import repair_poses
 from app.recognition.recording.clip_range import ClipRange, find_clip_range
 from app.recognition.text.look_alikes import find_confusable
-from app.recognition.triggers.trigger import SALUTE, Trigger
-from app.store import DemonstrationSource
+from app.recognition.triggers.trigger import Trigger
+from app.store import ClipStore, DemonstrationSource
 
 UNNAMED = "this gesture"
 """Name in messages for a gesture that has no label yet."""
@@ -31,7 +31,7 @@ WORDS = frozenset({"label", "description", "command", "diver"})
 
 
 def demonstration_at(
-    studio: Studio, where: NewDemonstration | DemonstrationSource, trigger: Trigger = SALUTE
+    clips: ClipStore, where: NewDemonstration | DemonstrationSource, trigger: Trigger
 ) -> ClipRange:
     """Find the demonstration that a request or a source names, in takes by a language's trigger.
 
@@ -45,7 +45,7 @@ def demonstration_at(
         As `find_clip_range`.
 
     """
-    recording = studio.recording(where.clip_id)
+    recording = recording_of(clips, where.clip_id)
     return find_clip_range(
         recording, where.start, where.end, keep_transit=where.keep_transit, trigger=trigger
     )
@@ -73,7 +73,7 @@ def gesture_from(draft: GestureDraft, demonstration: ClipRange) -> Gesture:
 
 
 def gestures_from(
-    studio: Studio, drafts: Sequence[GestureDraft], trigger: Trigger = SALUTE
+    clips: ClipStore, drafts: Sequence[GestureDraft], trigger: Trigger
 ) -> list[tuple[Gesture, ClipRange]]:
     """Return the gestures that drafts describe, with their demonstrations.
 
@@ -88,7 +88,7 @@ def gestures_from(
     made = []
     for index, draft in enumerate(drafts):
         try:
-            demonstration = demonstration_at(studio, draft, trigger)
+            demonstration = demonstration_at(clips, draft, trigger)
             made.append((gesture_from(draft, demonstration), demonstration))
         except (ProblemError, GestureError, RangeError) as error:
             problem = problem_of(error)

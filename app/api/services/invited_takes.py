@@ -20,10 +20,12 @@ from app.api.http.problems import ProblemError
 from app.api.http.schemas.gestures import DemonstrationDraft
 from app.api.jobs.job import compute_in_place
 from app.api.services import gesture_edits
-from app.api.services.demonstration_sources import faults_of_source, find_sources, keep_source
+from app.api.services.demonstration_sources import faults_of_source
 from app.api.services.identities import Identities, Identity
 from app.api.services.language_responses import save_revision
+from app.api.services.recording_cache import recording_of
 from app.api.services.running_studio import Studio
+from app.api.services.stored_languages import language_of, recognizer_of
 from app.recognition import Gesture, Language, OsgError, Recognition, Recognizer
 from app.recognition.explanation.demonstration_faults import FaultKind
 from app.recognition.gestures.demonstration import MAX_DEMONSTRATIONS
@@ -102,7 +104,7 @@ async def settle_takes(studio: Studio, identities: Identities) -> None:
                 takes = await run_in_threadpool(studio.invitations.waiting)
                 for take in takes:
                     look = partial(_look_at, studio, identities, take)
-                    if (job := await compute_in_place(studio.edits, look)) is not None:
+                    if (job := await compute_in_place(studio.turns.edits, look)) is not None:
                         await studio.extractions.cancel(job)
                 seen = changes
         except store.StoreError as error:
@@ -128,7 +130,7 @@ def _look_at(studio: Studio, identities: Identities, take: store.InvitedTake) ->
     except store.NotFound:
         # Its clip is being stored, was deleted, or never came because the server ended.
         ready = take.created < now() - LOST
-    if not ready and found is not None and _owner_of(studio, identities, take) is None:
+    if not ready and found and _owner_of(studio.invitations, identities, take) is None:
         return found.job
     if not ready or not studio.invitations.claim(take.id):
         return None
@@ -142,9 +144,11 @@ def _look_at(studio: Studio, identities: Identities, take: store.InvitedTake) ->
     return None
 
 
-def _owner_of(studio: Studio, identities: Identities, take: store.InvitedTake) -> Identity | None:
+def _owner_of(
+    invitations: store.InvitationStore, identities: Identities, take: store.InvitedTake
+) -> Identity | None:
     """Return in whose name a take is added; None if its invitation was withdrawn, or they left."""
-    invitation = studio.invitations.get(take.invitation_id)
+    invitation = invitations.get(take.invitation_id)
     if invitation.closed == "withdrawn":
         return None
     return identities.of_inviter(invitation.owner, invitation.created)
@@ -201,13 +205,13 @@ def remove_take(studio: Studio, take: store.InvitedTake, quota: store.Quota) -> 
     language_id = studio.invitations.get(take.invitation_id).language_id
 
     def without(language: Language) -> Language:
-        row = find_sources(studio, language).get(take.label, [])
+        row = studio.demonstrations.find(language).get(take.label, [])
         for index, source in enumerate(row):
             if source is not None and source.clip_id == take.clip_id:
                 return gesture_edits.remove_demonstration_from(language, take.label, index)
         return language
 
-    language = studio.language(studio.languages.get(language_id))
+    language = language_of(studio.languages.get(language_id))
     if without(language) is not language:
         words = f"Remove the demonstration of {take.label} by {take.diver}"
         save_revision(studio, quota, language_id, words, without)
@@ -228,7 +232,7 @@ def _judge(
         When it has to be asked about.
 
     """
-    if (owner := _owner_of(studio, identities, take)) is None:
+    if (owner := _owner_of(studio.invitations, identities, take)) is None:
         raise Returned("This invitation was withdrawn.")
     if found is None:
         raise Returned("The clip did not arrive. Show it again.")
@@ -268,21 +272,20 @@ def add_take(
     invitation = studio.invitations.get(take.invitation_id)
     try:
         state = studio.languages.get(invitation.language_id)
-        language = studio.language(state)
+        language = language_of(state)
         gesture = gesture_edits.gesture_in(language, take.label)
     except (store.NotFound, ProblemError) as error:
         raise Returned("The language has no such gesture any more.") from error
-    if any(
-        each and each.clip_id == take.clip_id for each in find_sources(studio, language)[take.label]
-    ):
+    known = studio.demonstrations.find(language)[take.label]
+    if any(each and each.clip_id == take.clip_id for each in known):
         # Such as by a server that ended before it could say so.
         return _settle(studio, take, "added")
     require_unshown(gesture, take.diver)
-    draft = choose_range(studio, take, gesture, language.trigger)
+    draft = choose_range(studio.clips, take, gesture, language.trigger)
     try:
-        shown = gesture_edits.demonstration_at(studio, draft, language.trigger)
+        shown = gesture_edits.demonstration_at(studio.clips, draft, language.trigger)
         if not sure:
-            _require_read(studio.recognizer(state), take.label, shown)
+            _require_read(recognizer_of(state), take.label, shown)
         words = f"Add a demonstration of {take.label} by {take.diver}"
         changed = partial(_with_take, draft=draft, shown=shown)
         state = save_revision(studio, quota, invitation.language_id, words, changed)
@@ -291,7 +294,7 @@ def add_take(
     except (OsgError, store.NotFound, ProblemError) as error:
         detail = error.detail if isinstance(error, ProblemError) else error
         raise Returned(f"It cannot be used: {detail}.") from error
-    keep_source(studio, state, take.label, draft, shown, index=-1)
+    studio.demonstrations.keep(state, take.label, draft, shown, index=-1)
     studio.broadcast.publish("languages", id=invitation.language_id)
     return _settle(studio, take, "added")
 
@@ -333,7 +336,7 @@ def require_unshown(gesture: Gesture, diver: str) -> None:
 
 
 def choose_range(
-    studio: Studio, take: store.InvitedTake, gesture: Gesture, trigger: Trigger
+    clips: store.ClipStore, take: store.InvitedTake, gesture: Gesture, trigger: Trigger
 ) -> DemonstrationDraft:
     """Return the take's range without faults.
 
@@ -344,7 +347,7 @@ def choose_range(
 
     """
     draft = DemonstrationDraft(label=take.label, clip_id=take.clip_id, diver=take.diver)
-    recording = studio.recording(take.clip_id)
+    recording = recording_of(clips, take.clip_id)
     if recording.poses.seen.any(axis=1).mean() < FEW_BODIES:
         raise Returned("Nobody is seen. Stand so that your head and both arms are in the picture.")
     if trigger.kind in ("salute", "pose"):
@@ -359,11 +362,11 @@ def choose_range(
             raise Returned(f"The {sign} was not seen twice. Hold it longer, before and after.")
         draft = draft.model_copy(update={"start": closed[0].start, "end": closed[0].end})
     first = gesture.single_demonstrations()[0]
-    faults = faults_of_source(studio, draft, first, trigger)
+    faults = faults_of_source(clips, draft, first, trigger)
     for _ in range(MOST_MENDED):
         if faults and faults[0].remedy == "set_range" and faults[0].start is not None:
             draft = draft.model_copy(update={"start": faults[0].start, "end": faults[0].end})
-            faults = faults_of_source(studio, draft, first, trigger)
+            faults = faults_of_source(clips, draft, first, trigger)
     if faults:
         raise Returned(REASONS[faults[0].kind])
     return draft

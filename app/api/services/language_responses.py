@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Callable, Sequence
 from dataclasses import replace
+from functools import partial
 from itertools import zip_longest
 from urllib.parse import urlencode
 
@@ -13,9 +14,9 @@ from fastapi import Response
 from app.api.http.revisions import revision_tag
 from app.api.http.schemas.gestures import DemonstrationView, GestureView, SourceView
 from app.api.http.schemas.languages import LanguageSummary, LanguageView
-from app.api.services.demonstration_sources import sources_in
 from app.api.services.language_documents import draft_of
-from app.api.services.running_studio import DocumentCache, Studio
+from app.api.services.running_studio import Studio
+from app.api.services.stored_languages import DocumentCache, language_of
 from app.recognition import Language
 from app.recognition.explanation.strokes import transcribe_gesture
 from app.recognition.explanation.transcript import describe_strokes
@@ -48,13 +49,17 @@ def save_revision(
     )
 
 
-def save_language(
-    studio: Studio, quota: Quota, draft: Draft, revision: int = 1, *, sample: str | None = None
-) -> LanguageState:
-    """Store a new language; errors as `LanguageStore.create`."""
-    return studio.keep_within(
-        quota, lambda: studio.languages.create(draft, revision, sample=sample, quota=quota)
-    )
+def add_language(
+    studio: Studio,
+    quota: Quota,
+    draft: Draft,
+    revision: int,
+    response: Response,
+    sample: str | None = None,
+) -> LanguageView:
+    """Store a new language, publish it and answer with it; errors as `LanguageStore.create`."""
+    create = partial(studio.languages.create, draft, revision, sample=sample, quota=quota)
+    return announce(studio, studio.keep_within(quota, create), response)
 
 
 def announce(studio: Studio, state: LanguageState, response: Response) -> LanguageView:
@@ -66,8 +71,8 @@ def announce(studio: Studio, state: LanguageState, response: Response) -> Langua
 def answer(studio: Studio, state: LanguageState, response: Response) -> LanguageView:
     """Answer with a language, and set its ETag header."""
     response.headers["ETag"] = revision_tag(state.revision.revision)
-    language = studio.language(state)
-    sources = sources_in(studio, language)
+    language = language_of(state)
+    sources = studio.demonstrations.view(language)
     return LanguageView(
         **view_summary(state).model_dump(),
         gestures=[

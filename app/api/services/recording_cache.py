@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import OrderedDict
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from threading import Lock
@@ -10,6 +11,8 @@ from weakref import WeakKeyDictionary, WeakValueDictionary
 
 from app.api.http.problems import RETRY_SECONDS, ProblemError
 from app.recognition.recording.recording import MOST_BYTES, Recording, unpacked_bytes
+from app.store import ClipStore, JobStatus
+from app.store.clips import SO_FAR
 
 CACHED_RECORDINGS = 4
 """Number of recordings cached: the clip on screen and those it is compared with."""
@@ -95,3 +98,45 @@ class RecordingCache:
 
 _recordings = RecordingCache()
 load_recording = _recordings.get
+
+
+def recording_of(clips: ClipStore, clip_id: str, *, so_far: bool = False) -> Recording:
+    """Return the recording of a clip; see `recording_file`."""
+    return load_recording(recording_file(clips, clip_id, so_far=so_far))
+
+
+def recording_file(clips: ClipStore, clip_id: str, *, so_far: bool = False) -> RecordingFile:
+    """Return the file of a clip's recording.
+
+    Parameters
+    ----------
+    clips
+        The store of the clips.
+    clip_id
+        The clip's.
+    so_far
+        Whether the first frames suffice while the others are being read.
+
+    Raises
+    ------
+    NotFound
+        When there is no such clip.
+    ProblemError
+        409 while its poses are not extracted.
+
+    """
+    found = clips.get(clip_id)
+    if so_far and found.job.status == JobStatus.RUNNING:
+        with suppress(OSError):
+            file = clips.place(clip_id, SO_FAR)
+            return RecordingFile(file, file.stat().st_mtime_ns, whole=False)
+    if found.job.status != JobStatus.DONE:
+        reason = f"{found.job.status}: {found.job.error}" if found.job.error else None
+        raise ProblemError(
+            409,
+            "clip_not_ready",
+            f"the poses of this clip are not extracted ({reason or found.job.status}); "
+            "wait for its job, or start it again",
+            job_id=found.job.id,
+        )
+    return whole_recording(clips.recording(clip_id))

@@ -5,56 +5,33 @@ from __future__ import annotations
 import asyncio
 import logging
 import time
-from collections import OrderedDict
-from collections.abc import AsyncIterator, Callable, Coroutine, Iterator
-from contextlib import ExitStack, asynccontextmanager, contextmanager, suppress
+from collections.abc import AsyncIterator, Callable, Iterator
+from contextlib import ExitStack, asynccontextmanager, contextmanager
 from datetime import datetime, timedelta
-from functools import partial, wraps
-from inspect import Parameter, signature
-from threading import Event, Lock
-from typing import Annotated, Any, Generic, TypeVar
+from functools import partial
+from typing import Annotated, Any, TypeVar
 
 from fastapi import Depends
 from starlette.concurrency import run_in_threadpool
-from starlette.requests import HTTPConnection, Request
+from starlette.requests import HTTPConnection
 
 from app import store
-from app.api.events.broadcast import Broadcast
-from app.api.events.broadcast import Event as BroadcastEvent
-from app.api.http.connection import compute_while_connected
-from app.api.http.problems import ProblemError
+from app.api.events.broadcast import Broadcast, Event
 from app.api.jobs.extraction_queue import ExtractionQueue
-from app.api.jobs.job import JobRunner, compute_in_place
+from app.api.jobs.job import JobRunner
 from app.api.observation.heap import keep_trimmed
 from app.api.observation.metrics import Metrics
+from app.api.services.demonstration_sources import Demonstrations
 from app.api.services.kept_exports import KeptExports
-from app.api.services.recording_cache import RecordingFile, load_recording, whole_recording
+from app.api.services.limited_routes import Turns
 from app.api.services.sample_library import Samples
 from app.api.workers.worker_messages import Progress
 from app.api.workers.worker_processes import Workers
-from app.recognition import Language, Recognizer
-from app.recognition.recording.recording import Recording
 from app.settings import Settings
-from app.store.clips import SO_FAR
 from app.store.models import now
 from app.store.objects import open_object_store
 from app.store.server_messages import open_messages
 from app.store.uploads import KEPT
-
-MOST_CACHED = 16
-"""Number of languages, and of recognisers, cached; each takes a few megabytes."""
-
-MOST_CACHED_CHARACTERS = 32_000_000
-"""Characters of their documents together: a cached language takes five times its document, and one
-of a thousand gestures has 27 million."""
-
-MOST_COMPUTATIONS = 2
-"""Most explanations, previews, pages and the like computed at the same time: one takes seconds with
-a large language, and threads must be left for all other requests."""
-
-MOST_EDITS = 2
-"""Most edits of languages made at the same time: one of a large language takes seconds, and is made
-again if another one of that language came first."""
 
 ONE_SERVER = "SQLite serves one server; for several, set OSG_DATABASE_URL=postgresql+psycopg://USER@HOST/NAME"
 """Advice for a second server that is started on the database file of another one."""
@@ -69,12 +46,12 @@ at which the clock was set forward."""
 
 logger = logging.getLogger(__name__)
 
-Made = TypeVar("Made")
+Part = TypeVar("Part")
 Stored = TypeVar("Stored")
 
 
 class Studio:
-    """Parts of one running server.
+    """Parts of one running server; a route that needs one or two of them asks for these alone.
 
     Parameters
     ----------
@@ -87,31 +64,25 @@ class Studio:
 
     Attributes
     ----------
-    clips, uploads, quotas, jobs, languages, sources, recognitions, audit, labelled, practice,
-    invitations, sign_ins
+    clips, uploads, quotas, jobs, languages, recognitions, audit, labelled, practice, invitations,
+    sign_ins
         The store.
+    demonstrations
+        Knows from which clips demonstrations come.
+    samples
+        The languages and clips that come with the program.
+    broadcast
+        Publishes changes to the open pages.
     workers
         Starts processes that read clips.
     runner
         Runs jobs of all kinds.
     extractions
         Queues the jobs that extract poses from clips.
-    broadcast
-        Publishes changes to the open pages.
-    samples
-        The languages and clips that come with the program.
-    stopping
-        Event that is set when the server is about to stop.
-    computations
-        Limits the computations in threads at the same time, see `computed`.
-    brief_computations
-        Limits those that never take seconds, see `computed_briefly`.
-    edits
-        Limits the edits of languages at the same time, see `edited`.
-    joining
-        Lets one upload of chapters be joined at a time.
     exports
         Written files that wait to be fetched.
+    turns
+        Limits what is done at the same time.
 
     """
 
@@ -128,13 +99,13 @@ class Studio:
         self.quotas = store.QuotaStore(database)
         self.jobs = store.JobStore(database, store.identity_of(settings.data_dir))
         self.languages = store.LanguageStore(database)
-        self.sources = store.SourceStore(database)
         self.recognitions = store.RecognitionStore(database)
         self.audit = store.AuditStore(database, settings.data_dir)
         self.labelled = store.LabelledTakeStore(database)
         self.practice = store.PracticeStore(database)
         self.invitations = store.InvitationStore(database)
         self.sign_ins = store.SignInStore(database)
+        self.demonstrations = Demonstrations(self.clips, store.SourceStore(database))
         self.samples = Samples(settings.samples_dir)
         self.broadcast = Broadcast(partial(open_messages, database), self._hear)
         self.workers = Workers(settings, metrics, self.clips.hold)
@@ -148,26 +119,16 @@ class Studio:
             settings,
             self.samples.find_recording,
         )
-        self.stopping = Event()
-        self.computations = asyncio.Semaphore(MOST_COMPUTATIONS)
-        self.brief_computations = asyncio.Semaphore(MOST_COMPUTATIONS)
-        self.edits = asyncio.Semaphore(MOST_EDITS)
-        self.joining = asyncio.Semaphore()
         self.exports = KeptExports()
+        self.turns = Turns()
 
-    def _hear(self, event: BroadcastEvent) -> None:
+    def _hear(self, event: Event) -> None:
         """Store the progress of another server's job."""
         if event.kind == "jobs":
             told = event.data.get("progress")
             self.runner.note(event.data["id"], None if told is None else Progress(**told))
             if told is None:
                 self.extractions.look()
-
-    async def stop_soon(self) -> None:
-        """Cancel the jobs that somebody waits for, and end the event streams."""
-        self.stopping.set()
-        await self.runner.stop()
-        self.broadcast.close()
 
     def keep_within(self, quota: store.Quota, keep: Callable[[], Stored]) -> Stored:
         """Store something by `keep`; if need be, purge first what its owner deleted.
@@ -185,100 +146,6 @@ class Studio:
                 raise
             self.languages.purge_for(quota.owner, self.clips.purge_for(quota.owner, error.excess))
         return keep()
-
-    def recording(self, clip_id: str, *, so_far: bool = False) -> Recording:
-        """Return the recording of a clip; see `recording_file`."""
-        return load_recording(self.recording_file(clip_id, so_far=so_far))
-
-    def recording_file(self, clip_id: str, *, so_far: bool = False) -> RecordingFile:
-        """Return the file of a clip's recording.
-
-        Parameters
-        ----------
-        clip_id
-            The clip's.
-        so_far
-            Whether the first frames suffice while the others are being read.
-
-        Raises
-        ------
-        NotFound
-            When there is no such clip.
-        ProblemError
-            409 while its poses are not extracted.
-
-        """
-        found = self.clips.get(clip_id)
-        if so_far and found.job.status == store.JobStatus.RUNNING:
-            with suppress(OSError):
-                file = self.clips.place(clip_id, SO_FAR)
-                return RecordingFile(file, file.stat().st_mtime_ns, whole=False)
-        if found.job.status != store.JobStatus.DONE:
-            reason = f"{found.job.status}: {found.job.error}" if found.job.error else None
-            raise ProblemError(
-                409,
-                "clip_not_ready",
-                f"the poses of this clip are not extracted ({reason or found.job.status}); "
-                "wait for its job, or start it again",
-                job_id=found.job.id,
-            )
-        return whole_recording(self.clips.recording(clip_id))
-
-    def language(self, state: store.LanguageState) -> Language:
-        """Return the language that a revision holds."""
-        return _languages.get(state.revision.document)
-
-    def recognizer(self, state: store.LanguageState, profile: str | None = None) -> Recognizer:
-        """Return a recogniser of a revision, by default with the language's own profile.
-
-        Raises
-        ------
-        OsgError
-            When there is no such profile.
-
-        """
-        return _recognizers.get(state.revision.document, profile)
-
-
-class DocumentCache(Generic[Made]):
-    """What was made of documents, the least recently used of which go when they are too long.
-
-    The newest stays, however long it is.
-    """
-
-    def __init__(self, make: Callable[..., Made]) -> None:
-        self._make = make
-        self._made: OrderedDict[tuple[str, str | None], Made] = OrderedDict()
-        self._changing = Lock()
-
-    def __len__(self) -> int:
-        """Return how many documents something is kept of."""
-        return len(self._made)
-
-    def get(self, document: str, profile: str | None = None) -> Made:
-        """Return what was made of a document, or make it."""
-        key = document, profile
-        with self._changing:
-            if key in self._made:
-                self._made.move_to_end(key)
-                return self._made[key]
-        made = self._make(document) if profile is None else self._make(document, profile)
-        with self._changing:
-            self._made[key] = made
-            while len(self._made) > 1 and (
-                len(self._made) > MOST_CACHED
-                or sum(len(text) for text, _ in self._made) > MOST_CACHED_CHARACTERS
-            ):
-                self._made.popitem(last=False)
-        return made
-
-
-def _make_recognizer(document: str, profile: str | None = None) -> Recognizer:
-    return Recognizer(_languages.get(document), profile)
-
-
-_languages = DocumentCache(Language.from_json)
-_recognizers = DocumentCache(_make_recognizer)
 
 
 @asynccontextmanager
@@ -361,58 +228,27 @@ def clean(studio: Studio, moment: datetime) -> None:
         logger.info("removed %d deleted or abandoned objects and %d files", purged, swept)
 
 
-def _studio_of(connection: HTTPConnection) -> Studio:
-    studio: Studio = connection.app.state.studio
-    return studio
+def _part(choose: Callable[[Studio], Part]) -> Any:
+    async def part_of(connection: HTTPConnection) -> Part:
+        return choose(connection.app.state.studio)
+
+    return Depends(part_of)
 
 
-CurrentStudio = Annotated[Studio, Depends(_studio_of)]
-"""Type of a route's parameter that receives the running studio."""
+CurrentStudio = Annotated[Studio, _part(lambda studio: studio)]
+"""Type of a route's parameter that receives the running studio; those below receive one part."""
 
-
-def computed(route: Callable[..., Made]) -> Callable[..., Coroutine[Any, Any, Made]]:
-    """Decorate a route that computes for seconds: few run at a time, while their clients wait.
-
-    A route with the parameter ``advance`` calls it between its steps, and is ended there once its
-    client has left.
-    """
-    return _limited(route, lambda studio: studio.computations)
-
-
-def computed_briefly(route: Callable[..., Made]) -> Callable[..., Coroutine[Any, Any, Made]]:
-    """Decorate a route as `computed`, whose turn does not wait for what takes seconds."""
-    return _limited(route, lambda studio: studio.brief_computations)
-
-
-def edited(route: Callable[..., Made]) -> Callable[..., Coroutine[Any, Any, Made]]:
-    """Decorate a route that computes a change: few run at a time, and waiting takes no thread.
-
-    It goes on when its client leaves, so that the change is in the audit log.
-    """
-    return _limited(route, lambda studio: studio.edits, goes_on=True)
-
-
-def _limited(
-    route: Callable[..., Made],
-    places_of: Callable[[Studio], asyncio.Semaphore],
-    *,
-    goes_on: bool = False,
-) -> Callable[..., Coroutine[Any, Any, Made]]:
-    parameters = dict(signature(route).parameters)
-    has_steps = parameters.pop("advance", None) is not None
-
-    @wraps(route)
-    async def limited(*, connection: Request, **given: Any) -> Made:
-        def compute(advance: Callable[[], None]) -> Made:
-            return route(**given, **({"advance": advance} if has_steps else {}))
-
-        places = places_of(_studio_of(connection))
-        if goes_on:
-            return await compute_in_place(places, partial(route, **given))
-        return await compute_while_connected(connection, places, compute)
-
-    asked = Parameter("connection", Parameter.KEYWORD_ONLY, annotation=Request)
-    limited.__signature__ = signature(route).replace(  # type: ignore[attr-defined]
-        parameters=[*parameters.values(), asked]
-    )
-    return limited
+Audit = Annotated[store.AuditStore, _part(lambda studio: studio.audit)]
+Clips = Annotated[store.ClipStore, _part(lambda studio: studio.clips)]
+Invitations = Annotated[store.InvitationStore, _part(lambda studio: studio.invitations)]
+Jobs = Annotated[store.JobStore, _part(lambda studio: studio.jobs)]
+KnownDemonstrations = Annotated[Demonstrations, _part(lambda studio: studio.demonstrations)]
+Languages = Annotated[store.LanguageStore, _part(lambda studio: studio.languages)]
+Practice = Annotated[store.PracticeStore, _part(lambda studio: studio.practice)]
+Quotas = Annotated[store.QuotaStore, _part(lambda studio: studio.quotas)]
+Recognitions = Annotated[store.RecognitionStore, _part(lambda studio: studio.recognitions)]
+Runner = Annotated[JobRunner, _part(lambda studio: studio.runner)]
+SampleLibrary = Annotated[Samples, _part(lambda studio: studio.samples)]
+ServerSettings = Annotated[Settings, _part(lambda studio: studio.settings)]
+SignIns = Annotated[store.SignInStore, _part(lambda studio: studio.sign_ins)]
+Uploads = Annotated[store.UploadStore, _part(lambda studio: studio.uploads)]

@@ -12,16 +12,16 @@ from app.api.http.problems import ProblemError
 from app.api.http.schemas.gestures import GestureTrial, RecognitionRequest, RecognitionView
 from app.api.services.clip_responses import shows_pictures
 from app.api.services.demonstration_sources import (
+    Demonstrations,
     LeftOut,
     OwnDemonstrations,
     count_triggers_in_clip,
-    faults_of_language,
-    find_sources,
     find_takes,
-    sources_in,
 )
 from app.api.services.gesture_edits import change_gesture_of, demonstration_at
+from app.api.services.recording_cache import recording_of
 from app.api.services.running_studio import Studio
+from app.api.services.stored_languages import language_of, recognizer_of
 from app.recognition import Language, OsgError, PoseSequence, Recognition, Recognizer
 from app.recognition.explanation.context import KnownTake, RecognitionContext
 from app.recognition.explanation.counterfactuals import Counterfactual, Intervention
@@ -53,25 +53,26 @@ def recognize_range(
     Raises
     ------
     NotFound, ProblemError, OsgError
-        As `Studio.recording`, `find_clip_range`, `require_landmarks_of` and `try_gesture`.
+        As `recording_file`, `find_clip_range`, `require_landmarks_of` and `try_gesture`.
     QuotaExceeded
         When the sender may not keep another recognition.
 
     """
     state = studio.languages.get(wanted.language_id)
-    language = studio.language(state)
-    recording = studio.recording(wanted.clip_id, so_far=wanted.end is not None)
+    language = language_of(state)
+    recording = recording_of(studio.clips, wanted.clip_id, so_far=wanted.end is not None)
     if wanted.end is not None and wanted.end > recording.poses.time[-1]:
-        recording = studio.recording(wanted.clip_id)  # refused while these frames are being read
+        # Refused while these frames are being read.
+        recording = recording_of(studio.clips, wanted.clip_id)
     profile = wanted.profile or language.profile
     require_landmarks_of(studio.clips.get(wanted.clip_id).clip, recording.poses, language)
     meant = find_clip_range(recording, wanted.start, wanted.end, trigger=language.trigger)
-    changed = None if wanted.trial is None else try_gesture(studio, state, wanted.trial)
-    own = OwnDemonstrations(studio, language if changed is None else changed, wanted.trial)
+    changed = try_gesture(studio.clips, language, wanted.trial)
+    own = OwnDemonstrations(studio.demonstrations, changed or language, wanted.trial)
     without = own.find(wanted.clip_id, meant.start, meant.end)
     if not all(own.leave_one(label, without) for label, _ in without):
         without = ()
-    recognizer = make_recognizer(studio, state, profile, wanted.tuning, changed, without)
+    recognizer = make_recognizer(state, profile, wanted.tuning, changed, without)
     answer = recognizer.recognize(meant.poses, meant.unseen).to_dict()
     if without:
         answer[WITHOUT] = without
@@ -110,14 +111,13 @@ def require_landmarks_of(clip: store.Clip, poses: PoseSequence, language: Langua
 def load_context(record: store.RecognitionRecord, studio: Studio) -> RecognitionContext:
     """Return the context in which a recognition was made, by the language as it was then."""
     state = studio.languages.get(record.language_id, record.revision)
-    recording = studio.recording(record.clip_id, so_far=True)
+    recording = recording_of(studio.clips, record.clip_id, so_far=True)
     view = view_recognition(record)
     recognizer = make_recognizer(
-        studio,
         state,
         record.profile,
         view.tuning,
-        None if view.trial is None else try_gesture(studio, state, view.trial),
+        try_gesture(studio.clips, language_of(state), view.trial),
         [(str(label), int(number)) for label, number in view.without],
     )
     language = recognizer.language
@@ -126,24 +126,26 @@ def load_context(record: store.RecognitionRecord, studio: Studio) -> Recognition
         poses=find_clip_range(recording, record.start, record.end, trigger=language.trigger).poses,
         whole=find_surroundings(recording, record.start, record.end, language.trigger),
         known=tuple(load_known(studio, record.language_id, recognizer, but=record.clip_id)),
-        faults=faults_of_language(studio, language),
+        faults=studio.demonstrations.find_faults(language),
         closed=not any(
             not take.closed and min(take.end, record.end) > max(take.start, record.start)
-            for take in find_takes(studio, record.clip_id, state, so_far=True)
+            for take in find_takes(studio.clips, record.clip_id, state, so_far=True)
         ),
         recorded=load_recognition(record),
     )
 
 
 def locate_cuts(
-    studio: Studio, language: Language, counterfactuals: Iterable[Counterfactual]
+    demonstrations: Demonstrations,
+    language: Language,
+    counterfactuals: Iterable[Counterfactual],
 ) -> Iterator[Counterfactual]:
     """Yield the counterfactuals, of every cut demonstration with its clip and the range of it.
 
     A cut is left out where the clip of the demonstration is not known, or where it is not the
     gesture's first one, which alone can be replaced.
     """
-    sources = find_sources(studio, language)
+    sources = demonstrations.find(language)
     for found in counterfactuals:
         change = found.change
         if change.kind != "demonstration_cut":
@@ -153,7 +155,7 @@ def locate_cuts(
         source = sources[values["label"]][0] if values["demonstration"] == 0 else None
         if source is None:
             continue
-        begin = demonstration_at(studio, source, language.trigger).start
+        begin = demonstration_at(demonstrations.clips, source, language.trigger).start
         located = {
             "clip_id": source.clip_id,
             "clip_start": begin + values["start"],
@@ -164,7 +166,6 @@ def locate_cuts(
 
 
 def make_recognizer(
-    studio: Studio,
     state: store.LanguageState,
     profile: str,
     tuning: TuningEntry | None,
@@ -177,14 +178,16 @@ def make_recognizer(
     `without`.
     """
     if tuning is None and changed is None and not without:
-        return studio.recognizer(state, profile)
-    language = studio.language(state) if changed is None else changed
+        return recognizer_of(state, profile)
+    language = language_of(state) if changed is None else changed
     tuned = None if tuning is None else entry_to_tuning(tuning)
     return Recognizer(language.without_demonstrations(without), profile, tuning=tuned)
 
 
-def try_gesture(studio: Studio, state: store.LanguageState, trial: GestureTrial) -> Language:
-    """Return a copy of a revision in which one gesture is changed.
+def try_gesture(
+    clips: store.ClipStore, language: Language, trial: GestureTrial | None
+) -> Language | None:
+    """Return a copy of a language in which one gesture is changed; None without a trial.
 
     Raises
     ------
@@ -193,18 +196,12 @@ def try_gesture(studio: Studio, state: store.LanguageState, trial: GestureTrial)
         possible.
 
     """
+    if trial is None:
+        return None
     change = trial.change.model_copy(update={"label": None})
     shown = change.demonstration
-    language = studio.language(state)
-    demonstration = None if shown is None else demonstration_at(studio, shown, language.trigger)
+    demonstration = None if shown is None else demonstration_at(clips, shown, language.trigger)
     return change_gesture_of(language, trial.label, change, demonstration)
-
-
-def load_language(record: store.RecognitionRecord, studio: Studio) -> Language:
-    """Return the language that a recognition used, with the changed gesture of a trial."""
-    state = studio.languages.get(record.language_id, record.revision)
-    trial = view_recognition(record).trial
-    return studio.language(state) if trial is None else try_gesture(studio, state, trial)
 
 
 def load_recognition(record: store.RecognitionRecord) -> Recognition:
@@ -219,14 +216,17 @@ def view_recognition(record: store.RecognitionRecord) -> RecognitionView:
 
 
 def write_notes(
-    studio: Studio, record: RecognitionRecord, language: Language, nearest: str | None = None
+    demonstrations: Demonstrations,
+    record: RecognitionRecord,
+    language: Language,
+    nearest: str | None = None,
 ) -> list[str]:
     """Return a sentence for the range, and for each demonstration of a gesture with a fault.
 
     Parameters
     ----------
-    studio
-        Running studio with the clips.
+    demonstrations
+        The demonstrations of languages, with the clips.
     record
         The recognition.
     language
@@ -236,8 +236,8 @@ def write_notes(
 
     """
     notes = []
-    trigger = language.trigger
-    if count := count_triggers_in_clip(studio, record.clip_id, record.start, record.end, trigger):
+    trigger, where = language.trigger, (record.clip_id, record.start, record.end)
+    if count := count_triggers_in_clip(demonstrations.clips, *where, trigger):
         between = "salutes" if trigger.start is None else "poses"
         contained = describe_count(trigger, count)
         notes.append(
@@ -245,7 +245,7 @@ def write_notes(
             f"between the {between}."
         )
     if nearest is not None:
-        for source in sources_in(studio, language).get(nearest, []):
+        for source in demonstrations.view(language).get(nearest, []):
             if source is not None and source.faults:
                 notes.append(source.faults[0].sentence)
     return notes
@@ -282,7 +282,8 @@ def load_known(
 
     """
     language = recognizer.language
-    own, count, apart = OwnDemonstrations(studio, language), 0, set[LeftOut]()
+    own = OwnDemonstrations(studio.demonstrations, language)
+    count, apart = 0, set[LeftOut]()
     for take in reversed(list_known(studio, language_id)):
         former = take.former if isinstance(take, store.LabelledTake) else None
         if take.clip_id == but or take.expected not in language.labels:
@@ -293,7 +294,7 @@ def load_known(
             return
         end = take.end if isinstance(take, store.LabelledTake) else None
         try:
-            recording = studio.recording(take.clip_id)
+            recording = recording_of(studio.clips, take.clip_id)
             found = find_clip_range(recording, take.start, end, trigger=language.trigger)
             without = own.find(take.clip_id, found.start, found.end)
             is_new = without and without not in apart

@@ -22,7 +22,9 @@ from app.api.http.schemas.values import (
 from app.api.jobs.job import Job, Report, events_about, run_task
 from app.api.services.clip_responses import shows_pictures
 from app.api.services.demonstration_sources import LeftOut, OwnDemonstrations, find_takes
+from app.api.services.recording_cache import recording_file, recording_of
 from app.api.services.running_studio import Studio
+from app.api.services.stored_languages import language_of
 from app.api.services.stored_recognitions import WITHOUT
 from app.api.workers.tasks import TakeToRecognize, TestRun
 from app.api.workers.worker_messages import Failed, Finished, Progress, RecognizedTake
@@ -152,7 +154,7 @@ class TestSetView(View):
 
 
 def add_labelled(
-    studio: Studio, language_id: str, drafts: Sequence[LabelledTakeDraft], sender: str
+    studio: Studio, state: store.LanguageState, drafts: Sequence[LabelledTakeDraft], sender: str
 ) -> None:
     """Add takes to the test set of a language in the name of a sender.
 
@@ -166,11 +168,10 @@ def add_labelled(
         When the set would have more takes than it may.
 
     """
-    state = studio.languages.get(language_id)
-    language = studio.language(state)
+    language = language_of(state)
     takes = [
         store.LabelledTake(
-            language_id=language_id,
+            language_id=state.record.id,
             clip_id=draft.clip_id,
             start=start,
             end=end,
@@ -178,7 +179,7 @@ def add_labelled(
             added_by=sender,
         )
         for draft in drafts
-        for start, end in _ranges(studio, draft, state)
+        for start, end in _ranges(studio.clips, draft, state)
     ]
     studio.labelled.add(takes)
 
@@ -200,9 +201,11 @@ def test_run_of(studio: Studio, state: store.LanguageState) -> Job[Finished | Fa
 
     """
     takes, wanted = [], []
-    for take, without in list_waiting(studio, state):
+    for take, without, view in _view_takes(studio, state):
+        if not _is_waiting(view, state.revision.revision):
+            continue
         try:
-            wanted.append(_request_for(studio, take, without))
+            wanted.append(_request_for(studio.clips, take, without))
             takes.append(take)
         except (ProblemError, store.NotFound) as error:
             fault = problem_of(error).detail
@@ -226,20 +229,6 @@ def test_run_of(studio: Studio, state: store.LanguageState) -> Job[Finished | Fa
     return Job("test_run", test_run_key(language_id, revision), event, run, detached=True)
 
 
-def list_waiting(
-    studio: Studio, state: store.LanguageState
-) -> list[tuple[store.LabelledTake, LeftOut]]:
-    """Return the testable takes that the revision has not recognised yet, and what reads them not.
-
-    A take that is a demonstration is read by the language without that demonstration.
-    """
-    return [
-        (take, without)
-        for take, without, view in _view_takes(studio, state)
-        if _is_waiting(view, state.revision.revision)
-    ]
-
-
 def _is_waiting(take: LabelledTakeView, revision: int) -> bool:
     return take.testable and (take.result is None or take.result.revision != revision)
 
@@ -260,7 +249,7 @@ def view_test_set(studio: Studio, state: store.LanguageState) -> TestSetView:
         none=_rate_none([result for take, result in counted if take.expected_none]),
         better=[each for each, gain in gains.items() if gain > 0],
         worse=[each for each, gain in gains.items() if gain < 0],
-        upgraded=_were_upgraded(studio, [(before, now) for _, now, before in compared]),
+        upgraded=_were_upgraded(studio.recognitions, compared),
         waiting=sum(_is_waiting(take, state.revision.revision) for take in takes),
     )
 
@@ -271,10 +260,12 @@ def list_tested(studio: Studio, state: store.LanguageState) -> list[TestedGestur
     return [TestedGesture(each.label, each.right, each.asked) for each in found]
 
 
-def _request_for(studio: Studio, take: store.LabelledTake, without: LeftOut) -> TakeToRecognize:
-    recording, clip = studio.recording_file(take.clip_id).path, studio.clips.get(take.clip_id).clip
+def _request_for(
+    clips: store.ClipStore, take: store.LabelledTake, without: LeftOut
+) -> TakeToRecognize:
+    clip = clips.get(take.clip_id).clip
     return TakeToRecognize(
-        recording=recording,
+        recording=recording_file(clips, take.clip_id).path,
         start=take.start,
         end=take.end,
         keypoints_of=None if shows_pictures(clip) else clip.name,
@@ -300,7 +291,7 @@ def _keep(
             revision=state.revision.revision,
             start=found.start,
             end=found.end,
-            profile=studio.language(state).profile,
+            profile=language_of(state).profile,
             expected=take.expected,
             result=json.dumps(answer | {"version": __version__, WITHOUT: without}, allow_nan=False),
         )
@@ -312,17 +303,17 @@ def _keep(
 
 
 def _ranges(
-    studio: Studio, draft: LabelledTakeDraft, state: store.LanguageState
+    clips: store.ClipStore, draft: LabelledTakeDraft, state: store.LanguageState
 ) -> Iterator[tuple[float, float]]:
     """Yield start and end of each take that a draft means."""
-    recording = studio.recording(draft.clip_id)
+    recording = recording_of(clips, draft.clip_id)
     if draft.start is None and draft.end is None:
-        takes = find_takes(studio, draft.clip_id, state)
+        takes = find_takes(clips, draft.clip_id, state)
         yield from ((take.start, take.end) for take in takes)
         if not takes:
             yield float(recording.poses.time[0]), float(recording.poses.time[-1])
         return
-    trigger = studio.language(state).trigger
+    trigger = language_of(state).trigger
     meant = find_clip_range(recording, draft.start, draft.end, trigger=trigger)
     yield (
         meant.start if draft.start is None else draft.start,
@@ -340,17 +331,17 @@ def _worth(take: LabelledTakeView, result: LabelledResultView) -> int:
 
 
 def _were_upgraded(
-    studio: Studio,
-    compared: Sequence[tuple[LabelledResultView, LabelledResultView]],
+    recognitions: store.RecognitionStore,
+    compared: Sequence[tuple[LabelledTakeView, LabelledResultView, LabelledResultView]],
 ) -> bool:
     """Return whether another version of the program gave the oldest results before."""
-    pairs = [pair for pair in compared if all(each.recognition_id for each in pair)]
+    pairs = [pair for _, *pair in compared if all(each.recognition_id for each in pair)]
     if not pairs:
         return False
     try:
         versions = {
-            json.loads(studio.recognitions.get(each.recognition_id or "").result).get("version")
-            for each in min(pairs, key=lambda pair: pair[0].revision)
+            json.loads(recognitions.get(each.recognition_id or "").result).get("version")
+            for each in min(pairs, key=lambda pair: pair[1].revision)
         }
     except store.NotFound:
         return False
@@ -397,7 +388,7 @@ def _rate_none(results: Sequence[LabelledResultView]) -> NoneRateView:
 
 
 def _list_valid(
-    studio: Studio, tested: store.TestedTake, without: LeftOut
+    recognitions: store.RecognitionStore, tested: store.TestedTake, without: LeftOut
 ) -> list[store.LabelledResult]:
     """Return the results of a testable take that its own demonstration has not read.
 
@@ -405,12 +396,12 @@ def _list_valid(
     """
     if not without:
         return [*tested.results]
-    return [each for each in tested.results if _is_apart(studio, each.recognition_id)]
+    return [each for each in tested.results if _is_apart(recognitions, each.recognition_id)]
 
 
-def _is_apart(studio: Studio, recognition: str | None) -> bool:
+def _is_apart(recognitions: store.RecognitionStore, recognition: str | None) -> bool:
     try:
-        record = None if recognition is None else studio.recognitions.get(recognition)
+        record = None if recognition is None else recognitions.get(recognition)
     except store.NotFound:
         return False
     return record is None or WITHOUT in json.loads(record.result)
@@ -426,15 +417,18 @@ def _view_takes(
     studio: Studio, state: store.LanguageState
 ) -> Iterator[tuple[store.LabelledTake, LeftOut, LabelledTakeView]]:
     """Yield each take of a language, the demonstrations that it is itself, and what is shown."""
-    own = OwnDemonstrations(studio, studio.language(state))
+    own = OwnDemonstrations(studio.demonstrations, language_of(state))
     for tested in studio.labelled.of(state.record.id):
         take = tested.take
         without = own.find(take.clip_id, take.start, take.end)
-        yield take, without, _view(studio, tested, own, without)
+        yield take, without, _view(studio.recognitions, tested, own, without)
 
 
 def _view(
-    studio: Studio, tested: store.TestedTake, own: OwnDemonstrations, without: LeftOut
+    recognitions: store.RecognitionStore,
+    tested: store.TestedTake,
+    own: OwnDemonstrations,
+    without: LeftOut,
 ) -> LabelledTakeView:
     take = tested.take
     set_aside = own.show_former(take.expected, take.former)
@@ -444,7 +438,7 @@ def _view(
             **result.model_dump(exclude={"take_id", "created"}),
             right=_is_right(take, result),
         )
-        for result in (_list_valid(studio, tested, without) if is_testable else ())
+        for result in (_list_valid(recognitions, tested, without) if is_testable else ())
     ]
     return LabelledTakeView(
         **take.model_dump(exclude={"language_id", "created", "former"}),

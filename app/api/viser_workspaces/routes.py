@@ -22,8 +22,10 @@ from app.api.http.websockets import (
     until_one_ends,
 )
 from app.api.services.identities import identity_of
+from app.api.services.recording_cache import recording_of
 from app.api.services.running_studio import CurrentStudio, Studio
-from app.api.services.stored_recognitions import load_language, load_recognition
+from app.api.services.stored_languages import language_of
+from app.api.services.stored_recognitions import load_recognition, try_gesture, view_recognition
 from app.recognition import Language
 from app.recognition.errors import OsgError
 from app.store import RecognitionRecord
@@ -59,7 +61,7 @@ def view_of(studio: Studio, request: ViewRequest) -> WorkspaceView:
 
     """
     clip = studio.clips.get(request.clip_id).clip
-    recording = studio.recording(clip.id, so_far=True)
+    recording = recording_of(studio.clips, clip.id, so_far=True)
     record = studio.recognitions.get(request.recognition_id) if request.recognition_id else None
     start, end = request.start, request.end
     if record is not None and start is None and end is None:
@@ -80,9 +82,10 @@ def _language(
     studio: Studio, request: ViewRequest, record: RecognitionRecord | None
 ) -> Language | None:
     if record is not None:
-        return load_language(record, studio)
+        language = language_of(studio.languages.get(record.language_id, record.revision))
+        return try_gesture(studio.clips, language, view_recognition(record).trial) or language
     if request.language_id:
-        return studio.language(studio.languages.get(request.language_id))
+        return language_of(studio.languages.get(request.language_id))
     return None
 
 

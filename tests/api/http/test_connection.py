@@ -11,11 +11,11 @@ import httpx
 import pytest
 from starlette.requests import Request
 
-from app.api.http import connection
 from app.api.http.connection import while_connected
 from app.api.routes.gestures import previews
 from app.api.routes.languages import checks
-from app.api.services.running_studio import MOST_COMPUTATIONS
+from app.api.services import limited_routes
+from app.api.services.limited_routes import MOST_COMPUTATIONS
 from app.recognition import Language
 from app.recognition.explanation.alignment import compare_pair
 from app.recognition.recognizer import Recognizer
@@ -61,11 +61,11 @@ def test_a_preview_ends_when_its_client_leaves(
 
     monkeypatch.setattr(previews, "Recognizer", prepare)
     monkeypatch.setattr(previews, "rank_others", compare)
-    monkeypatch.setattr(connection, "while_connected", wait)
+    monkeypatch.setattr(limited_routes, "while_connected", wait)
     body = json.dumps({"label": "circle", "change": {}}).encode()
     with begin(server, "POST", f"{LANGUAGES}/{language}/preview/health", body):
         until(began.is_set)
-    until(lambda: server.studio.computations._value == MOST_COMPUTATIONS)
+    until(lambda: server.studio.turns.computations._value == MOST_COMPUTATIONS)
     assert not compared.is_set()
     monkeypatch.undo()
     again = client.post(f"{LANGUAGES}/{language}/preview/health", json=json.loads(body))
@@ -91,13 +91,13 @@ def test_a_pair_difference_ends_when_its_client_leaves_and_keeps_its_place_until
             left.set()
 
     monkeypatch.setattr(checks, "compare_pair", compare)
-    monkeypatch.setattr(connection, "while_connected", wait)
+    monkeypatch.setattr(limited_routes, "while_connected", wait)
     query = urlencode({"one": "circle", "other": "line"})
     with begin(server, "GET", f"{LANGUAGES}/{language}/contrast?{query}"):
         until(began.is_set)
-        assert server.studio.computations._value < MOST_COMPUTATIONS
+        assert server.studio.turns.computations._value < MOST_COMPUTATIONS
     until(left.is_set)
-    assert server.studio.computations._value < MOST_COMPUTATIONS
+    assert server.studio.turns.computations._value < MOST_COMPUTATIONS
     go_on.set()
-    until(lambda: server.studio.computations._value == MOST_COMPUTATIONS)
+    until(lambda: server.studio.turns.computations._value == MOST_COMPUTATIONS)
     assert compared == [(0, 1)]

@@ -2,27 +2,17 @@
 
 from __future__ import annotations
 
-import threading
-from collections.abc import Mapping
-from concurrent.futures import ThreadPoolExecutor
 from datetime import timedelta
 from pathlib import Path
-from typing import Any
 
-import httpx
 import pytest
 
-from app.api.routes.languages import checks, language_files, languages
-from app.api.services import language_responses, running_studio
-from app.api.services.language_documents import draft_of
+from app.api.services import running_studio
 from app.api.services.running_studio import check_store, clean
-from app.recognition import Language
 from app.settings import Settings
 from app.store import NotFound, StoreUnavailable
 from app.store.models import now
-from app.ui.slate.layout import lay_out
-from app.ui.slate.primitives import Page
-from tests.api.running import PATIENCE_SECONDS, Running, client_of, running, until
+from tests.api.running import running, until
 from tests.postgres import Cluster
 from tests.store.conftest import add_clip
 
@@ -83,87 +73,3 @@ def test_a_start_with_the_clock_set_forward_ends_no_undo(
         clean(server.studio, later)
         with pytest.raises(NotFound):
             server.studio.clips.restore(clip_id)
-
-
-def test_long_computations_of_many_clients_take_turns(
-    server: Running, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    at_work, most, free = 0, 0, threading.Event()
-
-    def lay_out_slowly(language: Language) -> Page:
-        nonlocal at_work, most
-        at_work += 1
-        most = max(most, at_work)
-        free.wait(PATIENCE_SECONDS)
-        at_work -= 1
-        return lay_out(language)
-
-    monkeypatch.setattr(language_files, "lay_out", lay_out_slowly)
-    with client_of(server.address) as client, ThreadPoolExecutor(8) as others:
-        language = client.post("/api/v1/languages", json={"name": "pool"}).json()["id"]
-        place = f"/api/v1/languages/{language}/slate.svg"
-        answers = [others.submit(client.get, place) for _ in range(8)]
-        until(lambda: at_work == running_studio.MOST_COMPUTATIONS)
-        # Others are answered meanwhile.
-        assert client.get(f"/api/v1/languages/{language}").status_code == 200
-        free.set()
-        assert {answer.result().status_code for answer in answers} == {200}
-    assert most == running_studio.MOST_COMPUTATIONS
-
-
-def test_cached_languages_are_limited_by_their_documents(
-    server: Running, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    states = [
-        server.studio.languages.create(draft_of(Language(name=name * 70), "made")) for name in "abc"
-    ]
-    size = len(states[0].revision.document)
-    monkeypatch.setattr(running_studio, "MOST_CACHED_CHARACTERS", 2 * size)
-    first = server.studio.language(states[0])
-    assert server.studio.language(states[0]) is first
-    server.studio.language(states[1])
-    assert server.studio.language(states[0]) is first
-    for state in states[1:]:
-        server.studio.language(state)
-    assert server.studio.language(states[0]) is not first
-    monkeypatch.setattr(running_studio, "MOST_CACHED_CHARACTERS", 1)
-    long = server.studio.language(states[2])
-    assert server.studio.language(states[2]) is long
-
-
-def test_what_is_told_of_languages_keeps_no_more_of_their_documents(
-    client: httpx.Client, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(running_studio, "MOST_CACHED_CHARACTERS", 1)
-    for name in ("pool", "sea", "lake"):
-        made = client.post("/api/v1/languages", json={"name": name}).json()
-        place = f"/api/v1/languages/{made['id']}"
-        assert client.get(f"{place}/phrases").status_code == 200
-        assert len(client.get(place).json()["sha256"]) == 64
-    assert len(language_responses._checksums) == len(checks._ambiguities) == 1
-
-
-def test_edits_of_languages_that_wait_take_no_thread(
-    server: Running, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    free, made = threading.Event(), list[str]()
-
-    def describe_slowly(fields: Mapping[str, Any]) -> str:
-        made.append(fields["author"])
-        assert free.wait(PATIENCE_SECONDS)
-        return "slow"
-
-    monkeypatch.setattr(languages, "_describe", describe_slowly)
-    with client_of(server.address) as client, ThreadPoolExecutor(50) as others:
-        language = client.post("/api/v1/languages", json={"name": "pool"}).json()["id"]
-        place = f"/api/v1/languages/{language}"
-        answers = [
-            others.submit(client.patch, place, json={"author": str(number)}) for number in range(50)
-        ]
-        until(lambda: len(made) == running_studio.MOST_EDITS)
-        # More wait than there are threads, and others are answered meanwhile.
-        assert client.get(place).json()["revision"] == 1
-        assert len(made) == running_studio.MOST_EDITS
-        free.set()
-        assert {answer.result().status_code for answer in answers} == {200}
-    assert sorted(made) == sorted(map(str, range(50)))

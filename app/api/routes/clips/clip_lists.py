@@ -12,7 +12,7 @@ from app.api.http.list_responses import NOT_SENT_AGAIN, KnownTags, list_response
 from app.api.http.problems import problem_responses
 from app.api.http.schemas.clips import ClipView
 from app.api.services.clip_responses import view_clip
-from app.api.services.running_studio import CurrentStudio
+from app.api.services.running_studio import Clips
 from app.recognition.text.described import DESCRIBED
 from app.store import ClipQuery, ClipStore, JobStatus
 
@@ -68,15 +68,13 @@ class ListedClips(BaseModel):
         200: {"description": "The clips", "headers": PAGE_HEADERS},
     },
 )
-def list_clips(
-    studio: CurrentStudio, known: KnownTags, wanted: Annotated[ListedClips, Query()]
-) -> Response:
+def list_clips(clips: Clips, known: KnownTags, wanted: Annotated[ListedClips, Query()]) -> Response:
     """List the clips, newest first: all of them, or a page of those that are asked for."""
     chosen = tuple(wanted.status or ()), tuple(wanted.id or ())
     query = ClipQuery(wanted.limit or MOST_LISTED, wanted.after, wanted.q.strip(), *chosen)
     if wanted.limit is None and query == ClipQuery(MOST_LISTED):
-        return _listed(studio.clips, known, None)
-    return _listed(studio.clips, known, query)
+        return _listed(clips, known, None)
+    return _listed(clips, known, query)
 
 
 def read_page(clips: ClipStore, query: ClipQuery | None) -> tuple[list[ClipView], dict[str, str]]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import filecmp
 import json
 from functools import partial
-from typing import Annotated
+from typing import Annotated, Any
 
 import numpy as np
 from fastapi import APIRouter, Header, Request, Response
@@ -28,8 +28,11 @@ from app.api.ingest.intake import (
 )
 from app.api.ingest.multipart import file_form, least_size, receive_file
 from app.api.services.clip_responses import shows_pictures, view_clip
-from app.api.services.demonstration_sources import find_takes, trigger_of
-from app.api.services.running_studio import CurrentStudio, Studio, computed_briefly
+from app.api.services.demonstration_sources import find_takes
+from app.api.services.limited_routes import computed_briefly
+from app.api.services.recording_cache import recording_of
+from app.api.services.running_studio import Clips, CurrentStudio, Languages, Studio
+from app.api.services.stored_languages import trigger_of
 from app.api.workers.pictures import thumbnails_in
 from app.clip_sources.source import MADE_VIDEO
 from app.recognition import PoseError, Recording
@@ -92,14 +95,14 @@ async def upload_clip(
     ):
         return await _repeat(request, studio, earlier)
     reserved = await require_place_in_queue(request, studio)
-    await require_quota(quota, studio, least_size(request))
+    await require_quota(quota, studio.quotas, least_size(request))
     with studio.clips.receiving() as partial:
         upload = await receive_file(request, partial, studio.settings, reserved=reserved)
         name, fields = upload.name, upload.fields
         room = room_of(upload.size, joined=fields.chapters is not None)
-        await require_quota(quota, studio, room)
+        await require_quota(quota, studio.quotas, room)
         async with joined(partial, studio, name=name, fields=fields) as whole:
-            made = await inspect(whole, studio, name=name, fields=fields)
+            made = await inspect(whole, studio.workers, name=name, fields=fields)
             made.clip.idempotency_key = idempotency_key
             return await store(made, whole, studio, request)
 
@@ -125,9 +128,9 @@ async def _repeat(request: Request, studio: Studio, earlier: ClipWithJob) -> sch
 
 
 @router.get("/{clip_id}", responses=problem_responses(404))
-def get_clip(clip_id: str, studio: CurrentStudio) -> schemas.ClipView:
+def get_clip(clip_id: str, clips: Clips) -> schemas.ClipView:
     """Describe one clip."""
-    return view_clip(studio.clips.get(clip_id))
+    return view_clip(clips.get(clip_id))
 
 
 @router.delete("/{clip_id}", status_code=204, responses=problem_responses(404))
@@ -155,7 +158,7 @@ async def retry_clip(request: Request, clip_id: str, studio: CurrentStudio) -> s
     if clip.needs_topic:
         raise ProblemError(409, "topic_needed", "choose first which topic the clip is made of")
     await require_place_in_queue(request, studio)
-    return await _another_job(request, clip_id, studio)
+    return await _submit(await _add_job(request, clip_id, studio), studio)
 
 
 @router.post("/{clip_id}/topic", status_code=202, responses=problem_responses(404, 409, 429))
@@ -173,7 +176,7 @@ async def choose_topic(
         raise ProblemError(409, "job_not_needed", detail)
     await require_place_in_queue(request, studio)
     await run_in_threadpool(studio.clips.choose_topic, clip_id, choice.topic)
-    return await _another_job(request, clip_id, studio)
+    return await _submit(await _add_job(request, clip_id, studio), studio)
 
 
 @router.post("/{clip_id}/turn", status_code=202, responses=problem_responses(404, 409, 429))
@@ -195,10 +198,6 @@ async def turn_clip(
     job = await _add_job(request, clip_id, studio, anew=True)
     await run_in_threadpool(studio.clips.turn, clip_id, choice.degrees)
     return await _submit(job, studio)
-
-
-async def _another_job(request: Request, clip_id: str, studio: Studio) -> schemas.ClipAccepted:
-    return await _submit(await _add_job(request, clip_id, studio), studio)
 
 
 async def _add_job(request: Request, clip_id: str, studio: Studio, *, anew: bool = False) -> Job:
@@ -225,13 +224,13 @@ async def _submit(job: Job, studio: Studio) -> schemas.ClipAccepted:
         206: {"description": "The range asked for", "content": {"video/*": {}}},
     },
 )
-def get_video(request: Request, clip_id: str, studio: CurrentStudio) -> FileResponse:
+def get_video(request: Request, clip_id: str, clips: Clips) -> FileResponse:
     """Send the clip as it was uploaded, or a range of it.
 
     Of a dive recording or a keypoint file, the video that its job made of it.
     """
-    clip = studio.clips.get(clip_id).clip
-    video = studio.clips.video(clip_id)
+    clip = clips.get(clip_id).clip
+    video = clips.video(clip_id)
     if clip.video_is_made and not video.is_file():
         detail = "the video of this clip is made while its poses are found; wait for its job"
         raise ProblemError(409, "clip_not_ready", detail)
@@ -250,28 +249,26 @@ def get_video(request: Request, clip_id: str, studio: CurrentStudio) -> FileResp
     response_class=Response,
     responses=file_responses("A small still picture", JPEG),
 )
-def get_poster(clip_id: str, studio: CurrentStudio) -> Response:
+def get_poster(clip_id: str, clips: Clips) -> Response:
     """Send a still picture of the clip: its first frame until its job begins, if it is a video."""
-    studio.clips.get(clip_id)
+    clips.get(clip_id)
     missing = "there is no still picture of this clip yet"
-    return send_picture(studio.clips.poster(clip_id), "no_poster", missing)
+    return send_picture(clips.poster(clip_id), "no_poster", missing)
 
 
 @router.get(
     "/{clip_id}/poses", response_model=schemas.PosesView, responses=problem_responses(404, 409)
 )
 @computed_briefly
-def get_poses(clip_id: str, studio: CurrentStudio) -> Response:
+def get_poses(clip_id: str, clips: Clips) -> Response:
     """Return the landmarks in every frame."""
-    poses = studio.recording(clip_id).poses
-    xy, confidence = np.round(poses.xy, PIXEL_DIGITS), poses.confidence
+    poses = recording_of(clips, clip_id).poses
+    confidence = poses.confidence
     content = {
         "landmarks": list(poses.landmarks),
         "time": np.round(poses.time, TIME_DIGITS).tolist(),
-        "xy": np.where(np.isnan(xy), None, xy).tolist(),  # type: ignore[call-overload]
-        "confidence": None
-        if confidence is None
-        else np.round(confidence, CONFIDENCE_DIGITS).tolist(),
+        "xy": _with_nulls(poses.xy, PIXEL_DIGITS),
+        "confidence": None if confidence is None else _with_nulls(confidence, CONFIDENCE_DIGITS),
         "frame_size": list(poses.frame_size),
     }
     # Serialised here, because pydantic would validate a million numbers again.
@@ -283,13 +280,14 @@ def get_poses(clip_id: str, studio: CurrentStudio) -> Response:
 @computed_briefly
 def get_takes(
     clip_id: str,
-    studio: CurrentStudio,
+    clips: Clips,
+    languages: Languages,
     language_id: TriggerLanguage = None,
     so_far: SoFar = False,
 ) -> list[schemas.TakeView]:
     """List what lies between the salutes, or other triggers of a language."""
-    state = None if language_id is None else studio.languages.get(language_id)
-    return list(find_takes(studio, clip_id, state, so_far=so_far))
+    state = None if language_id is None else languages.get(language_id)
+    return list(find_takes(clips, clip_id, state, so_far=so_far))
 
 
 class TimelineView(View):
@@ -318,24 +316,25 @@ class TimelineView(View):
 @computed_briefly
 def get_timeline(
     clip_id: str,
-    studio: CurrentStudio,
+    clips: Clips,
+    languages: Languages,
     language_id: TriggerLanguage = None,
     so_far: SoFar = False,
 ) -> Response:
     """Return the curves along the clip, one value a frame."""
-    recording = studio.recording(clip_id, so_far=so_far)
-    trigger = trigger_of(studio, language_id)
+    recording = recording_of(clips, clip_id, so_far=so_far)
+    trigger = trigger_of(languages, language_id)
     scores = np.maximum(*trigger.score(recording.poses, recording.salute))
-    has_thumbnails = studio.clips.filmstrip(clip_id).is_file()
+    has_thumbnails = clips.filmstrip(clip_id).is_file()
     speeds, unit = wrist_speeds(recording)
     content = {
         "time": np.round(recording.poses.time, TIME_DIGITS).tolist(),
         "salute": np.round(scores, CURVE_DIGITS).tolist(),
-        "speed": {name: _with_nulls(speed) for name, speed in speeds.items()},
+        "speed": {name: _with_nulls(speed, CURVE_DIGITS) for name, speed in speeds.items()},
         "unseen": [[each.start, each.end] for each in list_unseen(recording, trigger)],
         "unit": unit,
         "thumbnails": thumbnails_in(len(recording.poses)) if has_thumbnails else 0,
-        "turn": find_turn(recording.poses) if shows_pictures(studio.clips.get(clip_id).clip) else 0,
+        "turn": find_turn(recording.poses) if shows_pictures(clips.get(clip_id).clip) else 0,
     }
     return Response(json.dumps(content, allow_nan=False), media_type="application/json")
 
@@ -345,11 +344,11 @@ def get_timeline(
     response_class=Response,
     responses=file_responses("Thumbnails side by side", JPEG),
 )
-def get_filmstrip(clip_id: str, studio: CurrentStudio) -> Response:
+def get_filmstrip(clip_id: str, clips: Clips) -> Response:
     """Send the thumbnails along the clip, once its poses are found."""
-    studio.clips.get(clip_id)
+    clips.get(clip_id)
     missing = "there are no thumbnails of this clip yet"
-    return send_picture(studio.clips.filmstrip(clip_id), "no_filmstrip", missing)
+    return send_picture(clips.filmstrip(clip_id), "no_filmstrip", missing)
 
 
 def wrist_speeds(recording: Recording) -> tuple[dict[str, FloatArray], str]:
@@ -373,6 +372,6 @@ def wrist_speeds(recording: Recording) -> tuple[dict[str, FloatArray], str]:
     return speeds, trajectory.unit
 
 
-def _with_nulls(values: FloatArray) -> list[float | None]:
-    rounded = np.round(values, CURVE_DIGITS)
-    return [None if np.isnan(value) else float(value) for value in rounded]
+def _with_nulls(values: FloatArray, digits: int) -> list[Any]:
+    rounded = np.round(values, digits)
+    return list(np.where(np.isnan(rounded), None, rounded).tolist())  # type: ignore[call-overload]

@@ -14,7 +14,7 @@ from starlette.concurrency import run_in_threadpool
 from app.api.events.broadcast import Event
 from app.api.http.problems import problem_responses
 from app.api.http.schemas.values import View
-from app.api.services.running_studio import CurrentStudio, Studio
+from app.api.services.running_studio import CurrentStudio, Jobs, Runner, Studio
 from app.api.workers.worker_messages import Pose, Progress
 from app.store import Job, JobStatus, NotFound
 
@@ -64,9 +64,9 @@ router = APIRouter(prefix="/jobs", tags=["jobs"])
 
 
 @router.get("/{job_id}", responses=problem_responses(404))
-def get_job(job_id: str, studio: CurrentStudio) -> JobView:
+def get_job(job_id: str, jobs: Jobs, runner: Runner) -> JobView:
     """Return how far a job is."""
-    return view_job(studio.jobs.get(job_id), studio.runner.progress(job_id))
+    return view_job(jobs.get(job_id), runner.progress(job_id))
 
 
 @router.get(

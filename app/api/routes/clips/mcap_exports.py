@@ -17,7 +17,9 @@ from app.api.http.problems import ProblemError, file_responses, problem_response
 from app.api.http.schemas.values import Body, Identifier, View
 from app.api.jobs.job import Job, events_about, run_task
 from app.api.routes.awaited_jobs import await_job
+from app.api.services.recording_cache import recording_file
 from app.api.services.running_studio import CurrentStudio, Studio
+from app.api.services.stored_languages import language_of
 from app.api.services.stored_recognitions import load_recognition
 from app.api.workers.tasks import Export
 from app.api.workers.worker_messages import Failed
@@ -116,7 +118,7 @@ async def _write(
         task = content.model_copy(update={"target": written})
         event = events_about("exports", id=export_id)
         job = Job("bag_export", key, event, partial(run_task, studio.workers, task))
-        ended = await await_job(request, studio, job)
+        ended = await await_job(request, studio.runner, job)
         if isinstance(ended, Failed):
             raise ProblemError(503, ended.code, f"the MCAP file cannot be written: {ended.detail}")
         return written.replace(target)
@@ -129,18 +131,18 @@ def _name(content: Export) -> str:
 
 def _export(studio: Studio, clip_id: str) -> Export:
     """Collect the content of a clip's bag; its file is still to be named."""
-    studio.recording(clip_id)  # raises while its poses are not found
+    recording = recording_file(studio.clips, clip_id)
     clip = studio.clips.get(clip_id).clip
     records = studio.recognitions.all(clip_id=clip_id, limit=MOST_RECOGNITIONS)
     # Takes are cut by the trigger of the language used last.
     trigger = SALUTE
     if records:
         last = studio.languages.get(records[0].language_id, records[0].revision)
-        trigger = studio.language(last).trigger
+        trigger = language_of(last).trigger
     return Export(
         clip=clip.name,
         video=studio.clips.video(clip_id),
-        recording=studio.clips.recording(clip_id),
+        recording=recording.path,
         target=Path(),
         trigger=trigger_to_entry(trigger),
         recognitions=tuple(

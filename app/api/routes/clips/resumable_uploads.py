@@ -27,8 +27,15 @@ from app.api.ingest.intake import SenderQuota
 from app.api.ingest.multipart import display_name, require_space
 from app.api.middleware.request_bodies import too_large
 from app.api.services.identities import identity_of
-from app.api.services.running_studio import CurrentStudio, Studio
-from app.store import ClipWithJob, NotFound, Role, Upload
+from app.api.services.running_studio import (
+    Clips,
+    CurrentStudio,
+    Quotas,
+    ServerSettings,
+    Studio,
+    Uploads,
+)
+from app.store import ClipWithJob, NotFound, QuotaStore, Role, Upload, UploadStore
 from app.store.uploads import room_of
 
 VERSION: Final = "1.0.0"
@@ -38,7 +45,6 @@ OFFSETS: Final = "application/offset+octet-stream"
 
 _COMMON = {"Tus-Resumable": VERSION, "Cache-Control": "no-store"}
 
-_beginning: WeakValueDictionary[str, asyncio.Lock] = WeakValueDictionary()
 _writing: WeakValueDictionary[str, asyncio.Lock] = WeakValueDictionary()
 
 
@@ -54,9 +60,9 @@ versioned = APIRouter(prefix="/uploads", dependencies=[Depends(require_version)]
 
 
 @router.options("/uploads", status_code=204, responses=problem_responses())
-def tell_abilities(studio: CurrentStudio) -> Response:
+def tell_abilities(settings: ServerSettings) -> Response:
     """Return the version and the extensions of the tus protocol."""
-    size = str(studio.settings.max_clip_bytes)
+    size = str(settings.max_clip_bytes)
     abilities = {"Tus-Version": VERSION, "Tus-Extension": EXTENSIONS, "Tus-Max-Size": size}
     return Response(status_code=204, headers=_COMMON | abilities)
 
@@ -86,10 +92,7 @@ async def begin_upload(
     fields = UploadFields.read(given).model_dump(exclude_none=True, mode="json")
     texts = {key: str(value) for key, value in fields.items()}
     room = room_of(upload_length, joined="chapters" in texts)
-    # One at a time: no other upload may begin between the check and the file that reserves the
-    # space.
-    beginning = _beginning.setdefault(str(studio.clips.folder), asyncio.Lock())
-    async with beginning:
+    async with studio.turns.beginnings:
         reserved = await intake.require_place_in_queue(request, studio)
         require_space(studio.clips.folder, room, studio.settings, reserved=reserved)
         upload = await run_in_threadpool(
@@ -111,19 +114,19 @@ async def begin_upload(
 
 
 @versioned.head("/{upload_id}", responses=problem_responses(404, 412))
-def tell_offset(request: Request, upload_id: str, studio: CurrentStudio) -> Response:
+def tell_offset(request: Request, upload_id: str, clips: Clips, uploads: Uploads) -> Response:
     """Return how many bytes have arrived; `Content-Location` is the clip once all of it has.
 
     While all bytes are there and the clip is not, because it could not be stored, the last byte is
     asked for again: clients take an upload for finished whose offset is its length.
     """
-    if clip := studio.clips.by_idempotency_key(upload_id):
+    if clip := clips.by_idempotency_key(upload_id):
         _require_owner(request, upload_id, clip.clip.owner)
         size = str(clip.clip.received_size)
         return Response(
             headers=_finished_headers(clip) | {"Upload-Offset": size, "Upload-Length": size}
         )
-    upload = studio.uploads.get(upload_id)
+    upload = uploads.get(upload_id)
     _require_owner(request, upload_id, upload.owner)
     offset = min(upload.offset, max(upload.size - 1, 0))
     progress = {"Upload-Offset": str(offset), "Upload-Length": str(upload.size)}
@@ -156,10 +159,10 @@ async def append_part(
 
 
 @versioned.delete("/{upload_id}", status_code=204, responses=problem_responses(404, 412))
-def give_up_upload(request: Request, upload_id: str, studio: CurrentStudio) -> Response:
+def give_up_upload(request: Request, upload_id: str, quotas: Quotas, uploads: Uploads) -> Response:
     """Forget an upload and what came of it."""
-    _require_owner(request, upload_id, studio.uploads.get(upload_id).owner)
-    _forget(upload_id, studio)
+    _require_owner(request, upload_id, uploads.get(upload_id).owner)
+    _forget(upload_id, quotas, uploads)
     return Response(status_code=204, headers=_COMMON)
 
 
@@ -190,7 +193,7 @@ async def _append(request: Request, upload_id: str, studio: Studio, upload_offse
     reserved = intake.bytes_to_come(others)
     require_space(studio.clips.folder, upload.to_come, studio.settings, reserved=reserved)
     await run_in_threadpool(studio.quotas.renew, upload)
-    offset = await _write(request, upload, upload_offset, studio)
+    offset = await _write(request, upload, upload_offset)
     headers = _COMMON | {"Upload-Offset": str(offset)}
     if offset == upload.size:
         headers |= await _accept(request, upload, studio)
@@ -207,10 +210,10 @@ def _require_owner(request: Request, upload_id: str, owner: str) -> None:
         raise NotFound(f"there is no upload {upload_id[:80]!r}; begin it anew")
 
 
-def _forget(upload_id: str, studio: Studio) -> None:
+def _forget(upload_id: str, quotas: QuotaStore, uploads: UploadStore) -> None:
     """Remove an upload that becomes no clip."""
-    studio.quotas.release(upload_id)
-    studio.uploads.remove(upload_id)
+    quotas.release(upload_id)
+    uploads.remove(upload_id)
 
 
 def _metadata(header: str) -> dict[str, str]:
@@ -254,7 +257,7 @@ def _ends(size: int) -> tuple[int, ...]:
     return (size, size - 1)
 
 
-async def _write(request: Request, upload: Upload, offset: int, studio: Studio) -> int:
+async def _write(request: Request, upload: Upload, offset: int) -> int:
     """Write the received bytes from `offset` on to the disk; return the offset after them.
 
     Bytes received before a lost connection are kept, so that the next part continues after them.
@@ -291,12 +294,12 @@ async def _accept(request: Request, upload: Upload, studio: Studio) -> dict[str,
         name, fields = upload.name, UploadFields.read(upload.fields)
         try:
             async with intake.joined(upload.path, studio, name=name, fields=fields) as whole:
-                made = await intake.inspect(whole, studio, name=name, fields=fields)
+                made = await intake.inspect(whole, studio.workers, name=name, fields=fields)
                 made.clip.idempotency_key, made.clip.owner = upload.id, upload.owner
                 await intake.store(made, whole, studio, request, upload_id=upload.id)
         except ProblemError as error:
             if error.status_code < HTTPStatus.INTERNAL_SERVER_ERROR:
-                await run_in_threadpool(_forget, upload.id, studio)
+                await run_in_threadpool(_forget, upload.id, studio.quotas, studio.uploads)
             raise
         clip = await run_in_threadpool(studio.clips.by_idempotency_key, upload.id)
     # Also when it was a clip already: a crash may have come between the two.

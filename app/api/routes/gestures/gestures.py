@@ -24,9 +24,9 @@ from app.api.http.schemas.gestures import (
 from app.api.http.schemas.languages import LanguageView
 from app.api.routes.asked_revisions import CurrentEdit, CurrentRevision
 from app.api.services import gesture_edits
-from app.api.services.demonstration_sources import keep_source, sources_in
 from app.api.services.language_responses import view_demonstrations
-from app.api.services.running_studio import computed_briefly, edited
+from app.api.services.limited_routes import computed_briefly, edited
+from app.api.services.running_studio import KnownDemonstrations
 from app.api.services.trajectory_images import IMAGE_RESPONSES, Marks, send_trajectory_image
 from app.recognition import Language, LanguageError
 from app.recognition.gestures.demonstration import MAX_DEMONSTRATIONS
@@ -51,7 +51,7 @@ BORDER = 40
 @edited
 def add_gesture(draft: GestureDraft, edit: CurrentEdit) -> LanguageView:
     """Save a demonstration as a new gesture of the language."""
-    demonstration = gesture_edits.demonstration_at(edit.studio, draft, edit.trigger)
+    demonstration = gesture_edits.demonstration_at(edit.studio.clips, draft, edit.trigger)
     gesture = gesture_edits.gesture_from(draft, demonstration)
 
     def edit_language(language: Language) -> Language:
@@ -59,7 +59,7 @@ def add_gesture(draft: GestureDraft, edit: CurrentEdit) -> LanguageView:
         return language.with_gesture(gesture)
 
     state = edit.save(f"Add {gesture.label}", edit_language)
-    keep_source(edit.studio, state, gesture.label, draft, demonstration)
+    edit.studio.demonstrations.keep(state, gesture.label, draft, demonstration)
     return edit.answer(state)
 
 
@@ -67,12 +67,12 @@ def add_gesture(draft: GestureDraft, edit: CurrentEdit) -> LanguageView:
 @edited
 def add_gestures(draft: GesturesDraft, edit: CurrentEdit) -> LanguageView:
     """Save several demonstrations as new gestures in one revision: all of them, or none."""
-    made = gesture_edits.gestures_from(edit.studio, draft.gestures, edit.trigger)
+    made = gesture_edits.gestures_from(edit.studio.clips, draft.gestures, edit.trigger)
     gestures = [gesture for gesture, _ in made]
     title = f"Add {', '.join(gesture.label for gesture in gestures)}"
     state = edit.save(title, partial(gesture_edits.add_gestures_to, gestures=gestures))
     for where, (gesture, demonstration) in zip(draft.gestures, made, strict=True):
-        keep_source(edit.studio, state, gesture.label, where, demonstration)
+        edit.studio.demonstrations.keep(state, gesture.label, where, demonstration)
     return edit.answer(state)
 
 
@@ -83,7 +83,7 @@ def change_gesture(label: str, change: GestureChange, edit: CurrentEdit) -> Lang
     """Change what a gesture says, what of it counts, or the demonstration that shows it."""
     where, demonstration = change.demonstration, None
     if where is not None:
-        demonstration = gesture_edits.demonstration_at(edit.studio, where, edit.trigger)
+        demonstration = gesture_edits.demonstration_at(edit.studio.clips, where, edit.trigger)
     changed = partial(
         gesture_edits.change_gesture_of, label=label, change=change, demonstration=demonstration
     )
@@ -91,7 +91,7 @@ def change_gesture(label: str, change: GestureChange, edit: CurrentEdit) -> Lang
     if where is not None and demonstration is not None:
         now = label if change.label is None else change.label.strip()
         index = -1 if change.further else 0
-        keep_source(edit.studio, state, now, where, demonstration, index=index)
+        edit.studio.demonstrations.keep(state, now, where, demonstration, index=index)
     return edit.answer(state)
 
 
@@ -151,10 +151,12 @@ def _lay_out(trajectory: Trajectory) -> PosesView:
 
 
 @router.get("/demonstrations", responses=problem_responses(404))
-def list_demonstrations(label: str, asked: CurrentRevision) -> list[DemonstrationView]:
+def list_demonstrations(
+    label: str, asked: CurrentRevision, demonstrations: KnownDemonstrations
+) -> list[DemonstrationView]:
     """List the demonstrations of a gesture."""
     gesture = gesture_edits.gesture_in(asked.language, label)
-    sources = sources_in(asked.studio, asked.language)[label]
+    sources = demonstrations.view(asked.language)[label]
     return view_demonstrations(asked.state, gesture, sources)
 
 
@@ -162,10 +164,10 @@ def list_demonstrations(label: str, asked: CurrentRevision) -> list[Demonstratio
 @edited
 def add_demonstration(draft: DemonstrationDraft, edit: CurrentEdit) -> LanguageView:
     """Add a take to a gesture as one more demonstration, by the same diver or another."""
-    demonstration = gesture_edits.demonstration_at(edit.studio, draft, edit.trigger)
+    demonstration = gesture_edits.demonstration_at(edit.studio.clips, draft, edit.trigger)
     changed = partial(gesture_edits.add_demonstration_to, draft=draft, demonstration=demonstration)
     state = edit.save(f"Add a demonstration of {draft.label}", changed)
-    keep_source(edit.studio, state, draft.label, draft, demonstration, index=-1)
+    edit.studio.demonstrations.keep(state, draft.label, draft, demonstration, index=-1)
     return edit.answer(state)
 
 

@@ -11,9 +11,11 @@ from pydantic import Field
 from app.api.http.problems import ProblemError, problem_responses
 from app.api.http.schemas import gestures as schemas
 from app.api.http.schemas.values import Body, Label, View
+from app.api.routes.asked_revisions import NewestRevision
 from app.api.services import gesture_edits
 from app.api.services.demonstration_sources import view_faults
-from app.api.services.running_studio import CurrentStudio, Studio, computed
+from app.api.services.limited_routes import computed
+from app.api.services.running_studio import Clips
 from app.api.services.trajectory_images import draw_trajectory_image
 from app.recognition import Gesture, GestureError, Language, Recognizer
 from app.recognition.explanation.strokes import transcribe_gesture
@@ -27,6 +29,7 @@ from app.recognition.health.finding import DUPLICATE, measure_visible_share
 from app.recognition.poses.trajectory import Trajectory
 from app.recognition.preprocessing import salience
 from app.recognition.voters.registry import PAPER_VOTERS
+from app.store import ClipStore
 
 DISPLACEMENT_DIGITS = 3
 """Decimals of a displacement in torso lengths: about a millimetre on a diver."""
@@ -126,33 +129,33 @@ class OutlookView(View):
 @router.post("/preview", responses=problem_responses(404, 409))
 @computed
 def preview_gesture(
-    language_id: str,
+    asked: NewestRevision,
     request: PreviewRequest,
-    studio: CurrentStudio,
+    clips: Clips,
     *,
     marks: Annotated[bool, Query(description="Image with start dot and arrow, for people")] = False,
 ) -> PreviewView:
     """Return what a gesture would be; nothing is written."""
-    language = studio.language(studio.languages.get(language_id))
-    draft = _draft(language, request, studio)
+    language = asked.language
+    draft = _draft(language, request, clips)
     try:
         gesture = draft.gesture()
     except GestureError as error:
         return _view(None, draft, str(error), marks=marks)
     where = request.change.demonstration
-    faults = [] if where is None else view_faults(studio, where, gesture, language.trigger)
+    faults = [] if where is None else view_faults(clips, where, gesture, language.trigger)
     return _view(gesture, draft, None, marks=marks, faults=faults)
 
 
 @router.post("/preview/health", responses=problem_responses(404, 409))
 @computed
 def preview_health(
-    language_id: str, request: PreviewRequest, studio: CurrentStudio, advance: Callable[[], None]
+    asked: NewestRevision, request: PreviewRequest, clips: Clips, advance: Callable[[], None]
 ) -> OutlookView:
     """Return how a gesture would change its language's report; nothing is written."""
-    language = studio.language(studio.languages.get(language_id))
+    language = asked.language
     advance()
-    draft = _draft(language, request, studio)
+    draft = _draft(language, request, clips)
     gesture = draft.gesture()
     advance()
     recognizer = Recognizer(draft.language(), "full")
@@ -177,7 +180,7 @@ def _nearest(gesture: Gesture, recognizer: Recognizer) -> list[NearGestureView] 
 
 
 def _draft(
-    language: Language, request: PreviewRequest, studio: Studio
+    language: Language, request: PreviewRequest, clips: ClipStore
 ) -> gesture_edits.EditedGesture:
     where = request.change.demonstration
     if request.label is not None:
@@ -186,7 +189,7 @@ def _draft(
         detail = "a new gesture needs a demonstration: name its clip"
         raise ProblemError(422, "request_invalid", detail, pointer="/change/demonstration")
     shown = (
-        None if where is None else gesture_edits.demonstration_at(studio, where, language.trigger)
+        None if where is None else gesture_edits.demonstration_at(clips, where, language.trigger)
     )
     return gesture_edits.EditedGesture(language, request.label, request.change, shown)
 
@@ -202,7 +205,7 @@ def _view(
     trajectory, shown = draft.trajectory(), draft.demonstration
     return PreviewView(
         problem=problem,
-        image=None if gesture is None else _image(gesture, marks=marks),
+        image=None if gesture is None else to_data_url(draw_trajectory_image(gesture, marks)),
         salient=[] if gesture is None else list(gesture.salient),
         held_shapes=0 if gesture is None else len(gesture.held_shapes),
         keypoints=[] if trajectory is None else _keypoints(trajectory),
@@ -215,11 +218,6 @@ def _view(
         strokes="" if gesture is None else describe_strokes(transcribe_gesture(gesture)),
         faults=list(faults),
     )
-
-
-def _image(gesture: Gesture, *, marks: bool) -> str:
-    """Return a gesture's trajectory image as a data URI."""
-    return to_data_url(draw_trajectory_image(gesture, marks))
 
 
 def _keypoints(trajectory: Trajectory) -> list[KeypointView]:

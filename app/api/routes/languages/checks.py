@@ -24,13 +24,15 @@ from app.api.http.schemas.values import Label, View
 from app.api.jobs.job import Job, events_about, run_task
 from app.api.routes.asked_revisions import CurrentRevision
 from app.api.routes.awaited_jobs import await_job
-from app.api.services.demonstration_sources import faults_of_language
 from app.api.services.gesture_edits import gesture_in
-from app.api.services.running_studio import DocumentCache, Studio, computed, computed_briefly
+from app.api.services.limited_routes import computed, computed_briefly
+from app.api.services.running_studio import CurrentStudio, Studio
+from app.api.services.stored_languages import DocumentCache, language_of, recognizer_of
 from app.api.services.stored_recognitions import list_known, load_known
 from app.api.services.test_sets import list_tested
 from app.api.workers.tasks import Check
 from app.api.workers.worker_messages import Failed, Finished
+from app.api.workers.worker_processes import Workers
 from app.recognition import Language, Recognizer
 from app.recognition.decision.result import Pair
 from app.recognition.explanation.alignment import Alignment, PairDifference, compare_pair
@@ -38,7 +40,7 @@ from app.recognition.explanation.blame import find_blame
 from app.recognition.explanation.context import KnownTakes
 from app.recognition.gestures.gesture import MAX_LABEL_LENGTH, Gesture
 from app.recognition.health.finding import Finding, Verdict
-from app.recognition.health.phrase_ambiguity import Ambiguity, AmbiguityKind, find_ambiguities
+from app.recognition.health.phrase_ambiguity import AmbiguityKind, find_ambiguities
 from app.recognition.phrases.grammar import Grammar
 from app.recognition.phrases.parser import PhraseEvent, PhraseEventKind, PhraseParser
 from app.store import LanguageState
@@ -82,6 +84,7 @@ router = APIRouter(prefix="/languages", tags=["languages"])
 async def check_language(
     request: Request,
     asked: CurrentRevision,
+    studio: CurrentStudio,
     response: Response,
     known: KnownTags,
 ) -> Any:
@@ -93,7 +96,7 @@ async def check_language(
     among the events; `DELETE` cancels it, which is answered here by 409. It ends when everybody
     who asked for it has left.
     """
-    studio, state = asked.studio, await run_in_threadpool(lambda: asked.state)
+    state = await run_in_threadpool(lambda: asked.state)
     faults = await run_in_threadpool(_find_faults, studio, state)
     tested = await run_in_threadpool(list_tested, studio, state)
     # Another version of the recogniser may give another report for the same revision; clips come
@@ -105,7 +108,7 @@ async def check_language(
         return Response(status_code=304, headers={"ETag": tag})
     response.headers["ETag"] = tag
     cancelled = ProblemError(409, "check_cancelled", CANCELLED)
-    ended = await await_job(request, studio, _job(state, studio), cancelled)
+    ended = await await_job(request, studio.runner, _job(state, studio.workers), cancelled)
     if isinstance(ended, Failed):
         raise ProblemError(422, ended.code, ended.detail)
     report = ended.result
@@ -113,31 +116,30 @@ async def check_language(
     errors = sum(warning["error"] for warning in warnings)
     # A test may have ended during the check.
     tested = await run_in_threadpool(list_tested, studio, state)
-    verdict = Verdict.of(errors, studio.language(state).labels, tested)
+    verdict = Verdict.of(errors, state.revision.labels, tested)
     return report | {"ok": not errors, "warnings": warnings, "verdict": verdict.to_dict()}
 
 
 @router.delete("/{language_id}/check", status_code=204, responses=problem_responses(404))
-async def cancel_check(asked: CurrentRevision) -> Response:
+async def cancel_check(asked: CurrentRevision, studio: CurrentStudio) -> Response:
     """Cancel the check of a revision, for all who wait for it; does nothing where none runs."""
     state = await run_in_threadpool(lambda: asked.state)
-    await asked.studio.runner.cancel(_job(state, asked.studio).key)
+    await studio.runner.cancel(_job(state, studio.workers).key)
     return Response(status_code=204)
 
 
-def _job(state: LanguageState, studio: Studio) -> Job[Finished | Failed]:
+def _job(state: LanguageState, workers: Workers) -> Job[Finished | Failed]:
     """Return the check of a revision: the same document gives the same report."""
     document = state.revision.document
     key = f"check {hashlib.sha256(document.encode()).hexdigest()}"
     event = events_about("checks", id=state.record.id, revision=state.revision.revision)
-    run = partial(run_task, studio.workers, Check(document=document))
+    run = partial(run_task, workers, Check(document=document))
     return Job("check", key, event, run, cached=True)
 
 
 def _find_faults(studio: Studio, state: LanguageState) -> list[dict[str, Any]]:
     """Return the faults of demonstrations as findings, by their clips and by the known takes."""
-    language = studio.language(state)
-    known = faults_of_language(studio, language)
+    known = studio.demonstrations.find_faults(language_of(state))
     told = [
         (label, faults[0].describe(label))
         for label, demonstrations in known.items()
@@ -145,7 +147,10 @@ def _find_faults(studio: Studio, state: LanguageState) -> list[dict[str, Any]]:
         if faults
     ]
     seen = {label for label, _ in told}
-    told += [each for each in _blame(studio, state) if each[0] not in seen]
+    if takes := list_known(studio, state.record.id):
+        ranges = tuple((each.clip_id, each.start, each.expected) for each in takes)
+        blamed = _blame_by(studio, state.record.id, state.revision.revision, ranges)
+        told += [each for each in blamed if each[0] not in seen]
     return [
         Finding("demonstration_fault", (label,), sentence, True).to_dict()
         for label, sentence in told
@@ -156,19 +161,15 @@ CACHED_BLAME = 64
 """Revisions, each with its known takes, of which it is known which demonstrations they blame."""
 
 
-def _blame(studio: Studio, state: LanguageState) -> tuple[tuple[str, str], ...]:
-    """Return gesture and sentence of each demonstration that the known takes blame."""
-    takes = list_known(studio, state.record.id)
-    ranges = tuple((each.clip_id, each.start, each.expected) for each in takes)
-    return _blame_by(studio, state.record.id, state.revision.revision, ranges) if takes else ()
-
-
 @lru_cache(CACHED_BLAME)
 def _blame_by(
     studio: Studio, language_id: str, revision: int, _takes: tuple[tuple[str, float, str], ...]
 ) -> tuple[tuple[str, str], ...]:
-    """Find the same; the known takes distinguish the states of the test set in the cache."""
-    language = studio.language(studio.languages.get(language_id, revision))
+    """Return gesture and sentence of each demonstration that the known takes blame.
+
+    The takes distinguish the states of the test set in the cache.
+    """
+    language = language_of(studio.languages.get(language_id, revision))
     if not language.gestures:
         return ()
     recognizer = Recognizer(language, "full")
@@ -208,7 +209,7 @@ def contrast_gestures(
     other: Annotated[Label, Query(description="Another one's")],
 ) -> ContrastView:
     """Return in what two gestures differ, and which of their moments correspond."""
-    recognizer = asked.studio.recognizer(asked.state, "full")
+    recognizer = recognizer_of(asked.state, "full")
     language = recognizer.language
     for label in (one, other):
         gesture_in(language, label)
@@ -329,9 +330,6 @@ def _feed(parser: PhraseParser, shown: str) -> tuple[PhraseEvent, ...]:
     return parser.feed(one or None, 0.0, 0.0)
 
 
-def _find_ambiguities(document: str) -> tuple[Ambiguity, ...]:
-    grammar = Language.from_json(document).grammar
-    return () if grammar is None else find_ambiguities(grammar)
-
-
-_ambiguities = DocumentCache(_find_ambiguities)
+_ambiguities = DocumentCache(
+    lambda document: find_ambiguities(Language.from_json(document).grammar or Grammar())
+)

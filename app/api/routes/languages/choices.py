@@ -15,10 +15,12 @@ from app.api.http.schemas import gestures as schemas
 from app.api.http.schemas.languages import LanguageView
 from app.api.http.schemas.values import Body, Identifier, Label, View
 from app.api.routes.asked_revisions import CurrentEdit, CurrentRevision
-from app.api.services.demonstration_sources import digests_of, keep_source
+from app.api.services.demonstration_sources import digests_of
 from app.api.services.gesture_edits import demonstration_at, gesture_in, gestures_from
-from app.api.services.running_studio import CurrentStudio, Studio, computed, edited
-from app.api.services.sample_library import STROKES
+from app.api.services.limited_routes import computed, edited
+from app.api.services.running_studio import CurrentStudio, Studio
+from app.api.services.sample_library import STROKES, Samples
+from app.api.services.stored_languages import language_of, recognizer_of
 from app.api.services.stored_recognitions import load_known
 from app.recognition import Gesture, Language
 from app.recognition.explanation.context import KnownTake
@@ -30,7 +32,7 @@ from app.recognition.health.choice import (
     measure_confusions,
 )
 from app.resources import known_signs_file
-from app.store import LanguageState, NotFound
+from app.store import ClipStore, LanguageState, NotFound
 from app.ui.charts import data_url, mark_gesture
 
 MOST_COMPARED = 300
@@ -154,9 +156,9 @@ def choose_gestures(
     The gestures of the language stay. Nothing is written.
     """
     state = None if choice.language_id is None else studio.languages.get(choice.language_id)
-    language = Language("choice", []) if state is None else studio.language(state)
+    language = Language("choice", []) if state is None else language_of(state)
     _require_few(language, len(choice.gestures))
-    made = gestures_from(studio, choice.gestures, language.trigger)
+    made = gestures_from(studio.clips, choice.gestures, language.trigger)
     joined = join_candidates(language, [gesture for gesture, _ in made])
     known = [] if state is None else _load_known(studio, state, language)
     confusions = measure_confusions(joined, known, advance=advance)
@@ -178,7 +180,10 @@ def choose_gestures(
 @router.post("/{language_id}/replacements", responses=problem_responses(404))
 @computed
 def propose_replacements(
-    wanted: ReplacementsRequest, asked: CurrentRevision, advance: Callable[[], None]
+    wanted: ReplacementsRequest,
+    asked: CurrentRevision,
+    studio: CurrentStudio,
+    advance: Callable[[], None],
 ) -> ReplacementsView:
     """Return the movements that fit best in the place of a gesture; nothing is written.
 
@@ -186,11 +191,11 @@ def propose_replacements(
     movements for a movement and held hand shapes for a held one, and the takes of the request;
     where none is told apart better, also the signs by which divers mean something else.
     """
-    studio, language = asked.studio, asked.language
+    language = asked.language
     own = gesture_in(language, wanted.label)
-    samples = list(_list_samples(studio, language, own))
+    samples = list(_list_samples(studio.samples, language, own))
     _require_few(language, len(samples) + len(wanted.gestures))
-    candidates = [*samples, *_list_takes(studio, wanted.gestures, language, advance)]
+    candidates = [*samples, *_list_takes(studio.clips, wanted.gestures, language, advance)]
     known = _load_known(studio, asked.state, language)
     views: list[ReplacementView] = []
     found: tuple[Replacement, ...] = ()
@@ -220,7 +225,7 @@ def replace_gesture(draft: ReplacementDraft, edit: CurrentEdit) -> LanguageView:
             raise ProblemError(404, "not_found", f"there are no samples {draft.sample!r}")
         other = gesture_in(sample, draft.gesture or "")
     else:
-        shown = demonstration_at(edit.studio, where, edit.trigger)
+        shown = demonstration_at(edit.studio.clips, where, edit.trigger)
         other = Gesture.from_demonstration(draft.label, shown.poses, diver=where.diver)
 
     former: list[str] = []
@@ -236,7 +241,7 @@ def replace_gesture(draft: ReplacementDraft, edit: CurrentEdit) -> LanguageView:
     if former:
         edit.studio.labelled.set_aside(edit.language_id, draft.label, former)
     if where is not None and shown is not None:
-        keep_source(edit.studio, state, draft.label, where, shown)
+        edit.studio.demonstrations.keep(state, draft.label, where, shown)
     return edit.answer(state)
 
 
@@ -264,10 +269,10 @@ class _Candidate:
         )
 
 
-def _list_samples(studio: Studio, language: Language, own: Gesture) -> Iterator[_Candidate]:
+def _list_samples(library: Samples, language: Language, own: Gesture) -> Iterator[_Candidate]:
     """Yield the samples' gestures of the kind of `own` whose movement a language lacks."""
     shown = [each for gesture in language.gestures for each in gesture.trajectories]
-    samples = studio.samples.movements()
+    samples = library.movements()
     for name in SAMPLES:
         for gesture in samples[name].gestures if name in samples else ():
             movement = gesture.trajectory
@@ -280,7 +285,7 @@ def _list_samples(studio: Studio, language: Language, own: Gesture) -> Iterator[
 
 
 def _list_takes(
-    studio: Studio,
+    clips: ClipStore,
     drafts: Sequence[schemas.GestureDraft],
     language: Language,
     advance: Callable[[], None],
@@ -289,7 +294,7 @@ def _list_takes(
     for index, draft in enumerate(drafts):
         advance()
         try:
-            ((gesture, _),) = gestures_from(studio, [draft], language.trigger)
+            ((gesture, _),) = gestures_from(clips, [draft], language.trigger)
         except (ProblemError, NotFound):
             continue
         yield _Candidate(gesture, index=index)
@@ -299,7 +304,7 @@ def _load_known(studio: Studio, state: LanguageState, language: Language) -> lis
     """Return the takes of the test set and of practice that are no demonstrations."""
     if not language.gestures:
         return []
-    known = load_known(studio, state.record.id, studio.recognizer(state, "full"))
+    known = load_known(studio, state.record.id, recognizer_of(state, "full"))
     return [each for each in known if not each.without]
 
 

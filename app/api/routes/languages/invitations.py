@@ -10,11 +10,13 @@ from app.api.http.schemas import invitations as schemas
 from app.api.ingest.intake import SenderQuota
 from app.api.services.gesture_edits import add_demonstration_to, demonstration_at, gesture_in
 from app.api.services.invited_takes import Returned, add_take, choose_range, remove_take
-from app.api.services.running_studio import CurrentStudio, Studio, computed, edited
+from app.api.services.limited_routes import computed, edited
+from app.api.services.running_studio import CurrentStudio, Invitations, Languages
+from app.api.services.stored_languages import language_of, recognizer_of
 from app.api.services.stored_recognitions import load_known
 from app.recognition import Recognizer
 from app.recognition.explanation.context import KnownTakes
-from app.store import InvitationState, InvitedTake, NotFound
+from app.store import InvitationState, InvitationStore, InvitedTake, NotFound
 from app.ui.charts import data_url, mark_gesture
 from app.ui.qr_code import draw_qr_code
 
@@ -22,10 +24,12 @@ router = APIRouter(prefix="/languages/{language_id}/invitations", tags=["invitat
 
 
 @router.get("", responses=problem_responses(404))
-def list_invitations(language_id: str, studio: CurrentStudio) -> list[schemas.InvitationView]:
+def list_invitations(
+    language_id: str, languages: Languages, invitations: Invitations
+) -> list[schemas.InvitationView]:
     """List the newest invitations to a language, with the takes that came in by each."""
-    studio.languages.get(language_id)
-    return [_view(each) for each in studio.invitations.of(language_id)]
+    languages.get(language_id)
+    return [_view(each) for each in invitations.of(language_id)]
 
 
 @router.post("", status_code=201, responses=problem_responses(404, 409))
@@ -42,7 +46,7 @@ def invite(
     else. It ends with its days, with its takes or bytes, when it is withdrawn, and when its maker
     may not edit any more.
     """
-    gestures = studio.language(studio.languages.get(language_id)).gestures
+    gestures = language_of(studio.languages.get(language_id)).gestures
     if not gestures:
         detail = "this language has no gesture that others could show; save one first"
         raise ProblemError(409, "no_gestures", detail)
@@ -62,10 +66,12 @@ def invite(
 
 
 @router.delete("/{invitation_id}", status_code=204, responses=problem_responses(404))
-def withdraw_invitation(language_id: str, invitation_id: str, studio: CurrentStudio) -> Response:
+def withdraw_invitation(
+    language_id: str, invitation_id: str, languages: Languages, invitations: Invitations
+) -> Response:
     """End an invitation at once; what was added stays."""
-    studio.languages.get(language_id)
-    studio.invitations.withdraw(language_id, invitation_id)
+    languages.get(language_id)
+    invitations.withdraw(language_id, invitation_id)
     return Response(status_code=204)
 
 
@@ -76,15 +82,15 @@ def get_received_take(
 ) -> schemas.ReceivedTakeOutlook:
     """Show a take that is held, and what the language would read with it."""
     state = studio.languages.get(language_id)
-    language = studio.language(state)
-    take = _find_take(studio, language_id, invitation_id, take_id)
+    language = language_of(state)
+    take = _find_take(studio.invitations, language_id, invitation_id, take_id)
     try:
-        draft = choose_range(studio, take, gesture_in(language, take.label), language.trigger)
+        draft = choose_range(studio.clips, take, gesture_in(language, take.label), language.trigger)
     except Returned as error:
         raise _refusal(error) from error
-    shown = demonstration_at(studio, draft, language.trigger)
+    shown = demonstration_at(studio.clips, draft, language.trigger)
     changed = add_demonstration_to(language, draft, shown)
-    recognizer = studio.recognizer(state)
+    recognizer = recognizer_of(state)
     takes = list(load_known(studio, language_id, recognizer, but=take.clip_id))
     with_it = Recognizer(changed, recognizer.profile, tuning=recognizer.tuning)
     repaired, broken = KnownTakes(recognizer, takes).try_change(with_it)
@@ -109,7 +115,7 @@ def change_received_take(
     quota: SenderQuota,
 ) -> schemas.ReceivedTakeView:
     """Add a take to the language, or remove it; its clip stays."""
-    take = _find_take(studio, language_id, invitation_id, take_id)
+    take = _find_take(studio.invitations, language_id, invitation_id, take_id)
     try:
         (add_take if change.status == "added" else remove_take)(studio, take, quota)
     except Returned as error:
@@ -117,11 +123,13 @@ def change_received_take(
     return schemas.ReceivedTakeView.of(studio.invitations.take(invitation_id, take_id))
 
 
-def _find_take(studio: Studio, language_id: str, invitation_id: str, take_id: str) -> InvitedTake:
+def _find_take(
+    invitations: InvitationStore, language_id: str, invitation_id: str, take_id: str
+) -> InvitedTake:
     """Return a take of an invitation to a language that is neither returned nor looked at."""
-    if studio.invitations.get(invitation_id).language_id != language_id:
+    if invitations.get(invitation_id).language_id != language_id:
         raise NotFound(f"there is no invitation {invitation_id!r} to this language")
-    take = studio.invitations.take(invitation_id, take_id)
+    take = invitations.take(invitation_id, take_id)
     if not take.held and take.status not in ("added", "removed"):
         raise ProblemError(409, "take_not_held", "this take was returned, or is looked at still")
     return take

@@ -18,10 +18,12 @@ from app.api.ingest.intake import SenderQuota
 from app.api.ingest.multipart import receive_body
 from app.api.routes.asked_revisions import AskedRevision, CurrentRevision
 from app.api.services.language_documents import LONGEST_NAME
-from app.api.services.language_responses import announce, save_language
-from app.api.services.running_studio import CurrentStudio, Studio, computed, computed_briefly
+from app.api.services.language_responses import add_language
+from app.api.services.limited_routes import computed, computed_briefly
+from app.api.services.running_studio import CurrentStudio, Studio
 from app.api.workers.tasks import Import, ImportedLanguage, read_language
 from app.api.workers.worker_messages import Failed
+from app.api.workers.worker_processes import Workers
 from app.recognition.language.export_format import FileFormat
 from app.recognition.language.file_schema import FORMAT, VERSION
 from app.recognition.language.requirements import find_requirements
@@ -61,7 +63,7 @@ async def import_language(
     # Stored on disk first, because many slow uploads must not fill the memory.
     with studio.clips.receiving() as partial:
         size = await receive_body(request, partial, studio.settings)
-        found = await while_connected(request, _read(partial, size, name, studio))
+        found = await while_connected(request, _read(partial, size, name, studio.workers))
         return await run_in_threadpool(_create, studio, quota, found, response)
 
 
@@ -139,12 +141,12 @@ def _content(asked: AskedRevision, format: FileFormat) -> str:
     return format.write(asked.language)
 
 
-async def _read(file: Path, size: int, name: str, studio: Studio) -> ImportedLanguage:
+async def _read(file: Path, size: int, name: str, workers: Workers) -> ImportedLanguage:
     """Read a language file; a large one in a separate process, with limits."""
     if size <= SMALL_BYTES:
         content = await run_in_threadpool(file.read_bytes)
         return await run_in_threadpool(read_language, content, name)
-    ended = await studio.workers.run(Import(file=file, name=name))
+    ended = await workers.run(Import(file=file, name=name))
     if isinstance(ended, Failed):
         raise ProblemError(422, ended.code, ended.detail, pointer=ended.pointer)
     return ImportedLanguage.model_validate(ended.result)
@@ -154,8 +156,7 @@ def _create(
     studio: Studio, quota: Quota, found: ImportedLanguage, response: Response
 ) -> LanguageView:
     read = found.model_dump(exclude={"revision"}) | {"name": found.name[:LONGEST_NAME]}
-    draft = Draft(**read)
-    return announce(studio, save_language(studio, quota, draft, found.revision), response)
+    return add_language(studio, quota, Draft(**read), found.revision, response)
 
 
 @router.get(

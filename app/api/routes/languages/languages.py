@@ -22,13 +22,11 @@ from app.api.http.schemas.values import Body, Identifier, Seconds, View
 from app.api.ingest.intake import SenderQuota
 from app.api.routes.asked_revisions import CurrentEdit, CurrentRevision
 from app.api.services.language_documents import draft_of, name_of_copy
-from app.api.services.language_responses import (
-    announce,
-    answer,
-    save_language,
-    view_summary,
-)
-from app.api.services.running_studio import CurrentStudio, Studio, computed_briefly, edited
+from app.api.services.language_responses import add_language, announce, answer, view_summary
+from app.api.services.limited_routes import computed_briefly, edited
+from app.api.services.recording_cache import recording_of
+from app.api.services.running_studio import CurrentStudio, Languages
+from app.api.services.stored_languages import language_of, recognizer_of
 from app.recognition import Language
 from app.recognition.errors import TriggerError
 from app.recognition.features.trajectory_image import SIMPLIFICATION
@@ -43,7 +41,7 @@ from app.recognition.language.file_schema import TuningEntry, entry_to_tuning, t
 from app.recognition.language.grammar_entry import entry_to_grammar
 from app.recognition.text.look_alikes import are_confusable
 from app.recognition.triggers.trigger import ArmPose, Trigger, TriggerKind
-from app.store import LanguageStore
+from app.store import ClipStore, LanguageStore
 
 router = APIRouter(prefix="/languages", tags=["languages"])
 
@@ -53,25 +51,24 @@ def create_language(
     draft: LanguageDraft, studio: CurrentStudio, quota: SenderQuota, response: Response
 ) -> LanguageView:
     """Make an empty language."""
-    _require_readable(draft.name, studio)
+    _require_readable(draft.name, studio.languages)
     language = Language(name=draft.name, author=draft.author)
     made = draft_of(language, "New language")
-    state = save_language(studio, quota, made, language.revision)
-    return announce(studio, state, response)
+    return add_language(studio, quota, made, language.revision, response)
 
 
 @router.get(
     "", response_model=list[LanguageSummary], responses={**problem_responses(), **NOT_SENT_AGAIN}
 )
-def list_languages(studio: CurrentStudio, known: KnownTags) -> Response:
+def list_languages(languages: Languages, known: KnownTags) -> Response:
     """List the languages, oldest first."""
-    return _listed(studio.languages, known, None)
+    return _listed(languages, known, None)
 
 
 @router.get("/{language_id}", responses=problem_responses(404))
-def get_language(asked: CurrentRevision, response: Response) -> LanguageView:
+def get_language(asked: CurrentRevision, studio: CurrentStudio, response: Response) -> LanguageView:
     """Describe a language in its newest or an older revision."""
-    return answer(asked.studio, asked.state, response)
+    return answer(studio, asked.state, response)
 
 
 @router.patch("/{language_id}", responses=problem_responses(404, 409, 412))
@@ -84,7 +81,7 @@ def change_language(change: LanguageChange, edit: CurrentEdit) -> LanguageView:
     if "tuning" in change.model_fields_set:
         fields["tuning"] = entry_to_tuning(change.tuning)
     if change.name is not None:
-        _require_readable(change.name, edit.studio, edit.language_id)
+        _require_readable(change.name, edit.studio.languages, edit.language_id)
     if not fields:
         return answer(edit.studio, edit.studio.languages.get(edit.language_id), edit.response)
     return edit.answer(edit.save(_describe(fields), lambda language: replace(language, **fields)))
@@ -113,15 +110,15 @@ def _describe(fields: Mapping[str, Any]) -> str:
 @router.post("/{language_id}/duplicate", status_code=201, responses=problem_responses(404))
 @edited
 def duplicate_language(
-    asked: CurrentRevision, quota: SenderQuota, response: Response
+    asked: CurrentRevision, studio: CurrentStudio, quota: SenderQuota, response: Response
 ) -> LanguageView:
     """Make another language of a language's newest or an older revision."""
-    studio, original = asked.studio, asked.language
+    original = asked.language
     taken = {each.revision.name for each in studio.languages.all()}
     name = name_of_copy(original.name, taken)
     copy = replace(original, name=name, created=None, revision=1)
     change = f"Copy of {original.name}, revision {asked.state.revision.revision}"
-    return announce(studio, save_language(studio, quota, draft_of(copy, change)), response)
+    return add_language(studio, quota, draft_of(copy, change), copy.revision, response)
 
 
 @router.delete("/{language_id}", status_code=204, responses=problem_responses(404, 412))
@@ -140,9 +137,9 @@ def restore_language(language_id: str, studio: CurrentStudio, response: Response
     return announce(studio, studio.languages.restore(language_id), response)
 
 
-def _require_readable(name: str, studio: Studio, language_id: str | None = None) -> None:
+def _require_readable(name: str, languages: LanguageStore, language_id: str | None = None) -> None:
     """Refuse a name that looks like another language's and is not the same."""
-    for state in studio.languages.all():
+    for state in languages.all():
         known = state.revision.name
         if state.record.id != language_id and known != name and are_confusable(name, known):
             detail = f"the name {name!r} looks like that of the language {known!r}; choose another"
@@ -190,7 +187,7 @@ class SettingsView(View):
 def get_settings(asked: CurrentRevision) -> SettingsView:
     """Return profile and tuning of a language beside the defaults; `PATCH` changes them."""
     language = asked.language
-    weights = dict(asked.studio.recognizer(asked.state).vote.weights) if language.gestures else {}
+    weights = dict(recognizer_of(asked.state).vote.weights) if language.gestures else {}
     return SettingsView(
         profile=language.profile,
         default_profile=DEFAULT_PROFILE,
@@ -233,9 +230,9 @@ class TriggerDraft(Body):
 @edited
 def change_trigger(draft: TriggerDraft, edit: CurrentEdit) -> LanguageView:
     """Choose what begins and ends a take; the takes of all clips are then found by it."""
-    studio = edit.studio
-    start = None if draft.start is None else _pose(studio, draft.start, "/start")
-    stop = None if draft.stop is None else _pose(studio, draft.stop, "/stop")
+    clips, languages = edit.studio.clips, edit.studio.languages
+    start = None if draft.start is None else _pose(clips, draft.start, "/start")
+    stop = None if draft.stop is None else _pose(clips, draft.stop, "/stop")
 
     def change(language: Language) -> Trigger:
         kept = language.trigger.start if draft.kind == "pose" else None
@@ -244,15 +241,15 @@ def change_trigger(draft: TriggerDraft, edit: CurrentEdit) -> LanguageView:
         except TriggerError as error:
             raise _refusal(str(error), "/stop" if stop else "/start") from error
 
-    words = change(studio.language(studio.languages.get(edit.language_id))).words
+    words = change(language_of(languages.get(edit.language_id))).words
     return edit.answer(
         edit.save(f"Find takes {words}", lambda each: replace(each, trigger=change(each)))
     )
 
 
-def _pose(studio: Studio, where: HeldPose, pointer: str) -> ArmPose:
+def _pose(clips: ClipStore, where: HeldPose, pointer: str) -> ArmPose:
     """Return the pose held in a range of a clip; a problem names its place in the request."""
-    poses = studio.recording(where.clip_id).poses
+    poses = recording_of(clips, where.clip_id).poses
     first = float(poses.time[0]) if where.start is None else where.start
     last = float(poses.time[-1]) if where.end is None else where.end
     inside = poses.between(first, last)

@@ -11,9 +11,10 @@ from app.api.http.problems import ProblemError, problem_responses
 from app.api.http.schemas.gestures import RecognitionRequest
 from app.api.http.schemas.values import Body, Diver, Identifier, Label, Seconds, View
 from app.api.ingest.intake import SenderQuota
-from app.api.services.demonstration_sources import list_sources
+from app.api.routes.asked_revisions import NewestRevision
 from app.api.services.gesture_edits import gesture_in
-from app.api.services.running_studio import CurrentStudio, Studio, edited
+from app.api.services.limited_routes import edited
+from app.api.services.running_studio import CurrentStudio, Languages, Practice
 from app.api.services.stored_recognitions import (
     load_context,
     load_recognition,
@@ -24,7 +25,7 @@ from app.evaluation.error_rate_bound import CONFIDENCE, LIMIT, bound_error_rate,
 from app.recognition.decision.result import Pair
 from app.recognition.explanation.causes import Cause
 from app.recognition.explanation.explanation import explain
-from app.store import LanguageState, PracticeTake
+from app.store import LanguageState, PracticeStore, PracticeTake
 
 router = APIRouter(prefix="/languages/{language_id}/practice", tags=["languages"])
 
@@ -95,29 +96,29 @@ class PracticeAnswerView(View):
 
 
 @router.get("", responses=problem_responses(404))
-def list_records(language_id: str, studio: CurrentStudio) -> list[PracticeRecordView]:
+def list_records(asked: NewestRevision, practice: Practice) -> list[PracticeRecordView]:
     """Return the record of every diver."""
-    return _records(studio, studio.languages.get(language_id))
+    return _records(practice, asked.state)
 
 
 @router.post("", status_code=201, responses=problem_responses(404, 409))
 @edited
 def show_gesture(
-    language_id: str, draft: PracticeDraft, studio: CurrentStudio, quota: SenderQuota
+    asked: NewestRevision, draft: PracticeDraft, studio: CurrentStudio, quota: SenderQuota
 ) -> PracticeAnswerView:
     """Recognise what a diver shows, say what to change, and keep it in the diver's record."""
-    state = studio.languages.get(language_id)
-    language = studio.language(state)
+    language = asked.language
     expected = gesture_in(language, language.spell(draft.expected)).label
-    if draft.clip_id in {source.clip_id for source in list_sources(studio, language)}:
+    if draft.clip_id in studio.demonstrations.clips_of(language):
         detail = "this clip is a demonstration of the language, which is recognised by construction"
         raise ProblemError(409, "is_demonstration", detail)
     shown = draft.model_dump(exclude={"diver"})
-    record = recognize_range(studio, RecognitionRequest(language_id=language_id, **shown), quota)
+    request = RecognitionRequest(language_id=asked.language_id, **shown)
+    record = recognize_range(studio, request, quota)
     answer = load_recognition(record)
     take = studio.practice.keep(
         PracticeTake(
-            language_id=language_id,
+            language_id=asked.language_id,
             clip_id=draft.clip_id,
             start=record.start,
             diver=draft.diver.strip(),
@@ -130,28 +131,30 @@ def show_gesture(
         )
     )
     why = explain(load_context(record, studio), expected, with_counterfactuals=False)
-    records = _records(studio, state)
+    records = _records(studio.practice, asked.state)
     return PracticeAnswerView(
         take=_view(take),
         sentence=why.sentence,
         details=list(why.details),
         causes=list(why.causes),
-        notes=[] if why.right else write_notes(studio, record, language),
+        notes=[] if why.right else write_notes(studio.demonstrations, record, language),
         record=next(each for each in records if each.diver == take.diver),
     )
 
 
 @router.delete("/{take_id}", responses=problem_responses(404))
-def remove_take(language_id: str, take_id: str, studio: CurrentStudio) -> list[PracticeRecordView]:
+def remove_take(
+    language_id: str, take_id: str, languages: Languages, practice: Practice
+) -> list[PracticeRecordView]:
     """Remove a take that was no attempt, such as a wrong clip."""
-    state = studio.languages.get(language_id)
-    studio.practice.remove(language_id, take_id)
-    return _records(studio, state)
+    state = languages.get(language_id)
+    practice.remove(language_id, take_id)
+    return _records(practice, state)
 
 
-def _records(studio: Studio, state: LanguageState) -> list[PracticeRecordView]:
+def _records(practice: PracticeStore, state: LanguageState) -> list[PracticeRecordView]:
     by_diver: dict[str, list[PracticeTake]] = {}
-    for take in studio.practice.of(state.record.id):
+    for take in practice.of(state.record.id):
         by_diver.setdefault(take.diver, []).append(take)
     return [
         _record(diver, takes, state.revision.revision) for diver, takes in sorted(by_diver.items())

@@ -11,7 +11,9 @@ from app.api.http.schemas.gestures import GestureView
 from app.api.routes.asked_revisions import CurrentEdit
 from app.api.services.language_diff import compare_gestures, describe_changes
 from app.api.services.language_responses import view_gesture
-from app.api.services.running_studio import CurrentStudio, computed_briefly, edited
+from app.api.services.limited_routes import computed_briefly, edited
+from app.api.services.running_studio import Languages
+from app.api.services.stored_languages import language_of
 from app.recognition.gestures.gesture import Gesture
 from app.store import LanguageRevision, LanguageState
 
@@ -19,29 +21,29 @@ router = APIRouter(prefix="/languages/{language_id}", tags=["revisions"])
 
 
 @router.get("/revisions", responses=problem_responses(404))
-def list_revisions(language_id: str, studio: CurrentStudio) -> list[schemas.RevisionView]:
+def list_revisions(language_id: str, languages: Languages) -> list[schemas.RevisionView]:
     """List what was done to a language, newest first."""
-    return [_revision_view(row) for row in studio.languages.revisions(language_id)]
+    return [_revision_view(row) for row in languages.revisions(language_id)]
 
 
 @router.post("/revert", responses=problem_responses(404, 412))
 @edited
 def revert_language(to: schemas.LanguageRevert, edit: CurrentEdit) -> schemas.LanguageView:
     """Make a new revision with the content of an older one."""
-    older = edit.studio.language(edit.studio.languages.get(edit.language_id, to.revision))
+    older = language_of(edit.studio.languages.get(edit.language_id, to.revision))
     return edit.answer(edit.save(f"Go back to revision {to.revision}", lambda _newest: older))
 
 
 @router.get("/comparison", responses=problem_responses(404))
 @computed_briefly
 def compare_revisions(
-    language_id: str, studio: CurrentStudio, older: Revision = None, newer: Revision = None
+    language_id: str, languages: Languages, older: Revision = None, newer: Revision = None
 ) -> schemas.RevisionComparison:
     """Diff two revisions; without `older`, against an empty language."""
-    after = studio.languages.get(language_id, newer)
-    before = None if older is None else studio.languages.get(language_id, older)
-    new = studio.language(after)
-    old = None if before is None else studio.language(before)
+    after = languages.get(language_id, newer)
+    before = None if older is None else languages.get(language_id, older)
+    new = language_of(after)
+    old = None if before is None else language_of(before)
     return schemas.RevisionComparison(
         older=None if before is None else _revision_view(before.revision),
         newer=_revision_view(after.revision),

@@ -16,9 +16,12 @@ from starlette.concurrency import run_in_threadpool
 from app.api.http.problems import ProblemError, problem_of, problem_responses
 from app.api.http.schemas.values import Body, Identifier, View
 from app.api.jobs.job import Job, Report, TimeLeft, compute_in_place, events_about
+from app.api.routes.asked_revisions import NewestRevision
 from app.api.routes.awaited_jobs import await_job
 from app.api.services.demonstration_sources import SAME_TAKE, find_takes
+from app.api.services.recording_cache import recording_of
 from app.api.services.running_studio import CurrentStudio, Studio
+from app.api.services.stored_languages import language_of, recognizer_of
 from app.api.services.stored_recognitions import require_landmarks_of
 from app.api.workers.worker_messages import Progress
 from app.evaluation.confusion import NONE
@@ -26,7 +29,7 @@ from app.evaluation.take_table import Row, row_of_fault, rows_of_clip, write_csv
 from app.recognition import OsgError, Recognition, Take
 from app.recognition.recording.clip_range import SAME_MOMENT, find_unseen_in
 from app.recognition.recording.segmentation import find_brackets
-from app.store import Clip, LabelledTake, LanguageState, StoreError
+from app.store import Clip, ClipStore, LabelledTake, LabelledTakeStore, LanguageState, StoreError
 
 MOST_CLIPS = 500
 """Most clips of one table."""
@@ -80,26 +83,19 @@ router = APIRouter(prefix="/languages/{language_id}/take-table", tags=["language
 
 @router.post("", responses=problem_responses(404))
 async def make_take_table(
-    request: Request, language_id: str, wanted: TakeTableRequest, studio: CurrentStudio
+    request: Request, asked: NewestRevision, wanted: TakeTableRequest, studio: CurrentStudio
 ) -> TakeTableView:
     """Recognise all takes of clips, and return one table; nothing is kept.
 
     How far it is comes as `tables` among the events; closing the request cancels it.
     """
-    state, clips = await run_in_threadpool(_load, studio, language_id, wanted)
-    recognize = partial(recognize_clip_takes, studio, state)
-    job = take_table_job(wanted.id, clips, recognize, studio.computations)
-    rows = await await_job(request, studio, job)
-    return TakeTableView(rows=[TakeRowView(**row) for row in rows], csv=write_csv(rows))
-
-
-def _load(
-    studio: Studio, language_id: str, wanted: TakeTableRequest
-) -> tuple[LanguageState, list[Clip]]:
-    return (
-        studio.languages.get(language_id),
-        [studio.clips.get(clip_id).clip for clip_id in wanted.clip_ids],
+    recognize = partial(recognize_clip_takes, studio, await run_in_threadpool(lambda: asked.state))
+    clips = await run_in_threadpool(
+        lambda: [studio.clips.get(clip_id).clip for clip_id in wanted.clip_ids]
     )
+    job = take_table_job(wanted.id, clips, recognize, studio.turns.computations)
+    rows = await await_job(request, studio.runner, job)
+    return TakeTableView(rows=[TakeRowView(**row) for row in rows], csv=write_csv(rows))
 
 
 def take_table_job(
@@ -161,25 +157,25 @@ def recognize_clip_takes(
         Called with the share of takes that are done; an exception in it ends the work.
 
     """
-    recognizer = studio.recognizer(state)
+    recognizer = recognizer_of(state)
     try:
-        recording = studio.recording(clip.id)
+        recording = recording_of(studio.clips, clip.id)
         require_landmarks_of(clip, recording.poses, recognizer.language)
-        takes = _list_takes(studio, state, clip)
+        takes = _list_takes(studio.clips, state, clip)
         results: list[tuple[Take, Recognition]] = []
         for take in takes:
             results.append((take, recognizer.recognize_take(take)))
             advance(len(results) / len(takes))
-        expected = _find_expected(studio, state, clip, takes)
+        expected = _find_expected(studio.labelled, state, clip, takes)
         rows = rows_of_clip(clip.name, recognizer, recording, results, expected)
     except (OsgError, ProblemError, StoreError) as error:
         rows = [row_of_fault(clip.name, recognizer, problem_of(error).detail)]
     return [row | {"clip_id": clip.id} for row in rows]
 
 
-def _list_takes(studio: Studio, state: LanguageState, clip: Clip) -> list[Take]:
+def _list_takes(clips: ClipStore, state: LanguageState, clip: Clip) -> list[Take]:
     """Return the takes that the studio shows for a clip, with their strokes."""
-    recording, trigger = studio.recording(clip.id), studio.language(state).trigger
+    recording, trigger = recording_of(clips, clip.id), language_of(state).trigger
     poses, brackets = recording.poses, find_brackets(recording, trigger)
     # Spotted takes get the margin of a range that a person chooses.
     margin = SAME_MOMENT if trigger.spots else 0.0
@@ -194,23 +190,19 @@ def _list_takes(studio: Studio, state: LanguageState, clip: Clip) -> list[Take]:
             untrimmed=poses.between(found.start, found.end),
             unseen=find_unseen_in(poses, brackets, found.start, found.end),
         )
-        for found in find_takes(studio, clip.id, state)
+        for found in find_takes(clips, clip.id, state)
     ]
 
 
 def _find_expected(
-    studio: Studio, state: LanguageState, clip: Clip, takes: list[Take]
+    labelled: LabelledTakeStore, state: LanguageState, clip: Clip, takes: list[Take]
 ) -> dict[int, str]:
     """Return the gesture that the language's test set expects, by number of the take."""
-    labelled = [
-        tested.take
-        for tested in studio.labelled.of(state.record.id)
-        if tested.take.clip_id == clip.id
-    ]
+    tested = [each.take for each in labelled.of(state.record.id) if each.take.clip_id == clip.id]
     return {
         number: known.expected or NONE
         for number, take in enumerate(takes, start=1)
-        for known in labelled
+        for known in tested
         if _is_same(take, known)
     }
 

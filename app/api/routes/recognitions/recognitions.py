@@ -11,7 +11,8 @@ from app.api.http.problems import ProblemError, file_responses, problem_response
 from app.api.http.schemas.gestures import ExplanationView, RecognitionRequest, RecognitionView
 from app.api.http.schemas.values import Label, View
 from app.api.ingest.intake import SenderQuota
-from app.api.services.running_studio import CurrentStudio, computed, computed_briefly
+from app.api.services.limited_routes import computed, computed_briefly
+from app.api.services.running_studio import CurrentStudio, Recognitions
 from app.api.services.stored_recognitions import (
     load_context,
     load_recognition,
@@ -46,20 +47,20 @@ def recognize(
 @router.get("", responses=problem_responses())
 @computed_briefly
 def list_recognitions(
-    studio: CurrentStudio,
+    recognitions: Recognitions,
     clip_id: Annotated[str | None, Query(max_length=64)] = None,
     language_id: Annotated[str | None, Query(max_length=64)] = None,
     limit: Annotated[int, Query(ge=1, le=MOST_LISTED)] = 100,
 ) -> list[RecognitionView]:
     """List recognitions, newest first."""
-    found = studio.recognitions.all(clip_id=clip_id, language_id=language_id, limit=limit)
+    found = recognitions.all(clip_id=clip_id, language_id=language_id, limit=limit)
     return [view_recognition(record) for record in found]
 
 
 @router.get("/{recognition_id}", responses=problem_responses(404))
-def get_recognition(recognition_id: str, studio: CurrentStudio) -> RecognitionView:
+def get_recognition(recognition_id: str, recognitions: Recognitions) -> RecognitionView:
     """Return a recognition as it was answered."""
-    return view_recognition(studio.recognitions.get(recognition_id))
+    return view_recognition(recognitions.get(recognition_id))
 
 
 @router.get("/{recognition_id}/explanation", responses=problem_responses(404, 409))
@@ -85,9 +86,11 @@ def explain_recognition(
     response.headers["Cache-Control"] = "private, max-age=60"
     explanation = explain(context, meant)
     nearest = None if explanation.right else explanation.nearest
-    notes = write_notes(studio, record, context.language, nearest)
+    notes = write_notes(studio.demonstrations, record, context.language, nearest)
     notes = [note for note in notes if note != explanation.sentence]
-    located = tuple(locate_cuts(studio, context.language, explanation.counterfactuals))
+    located = tuple(
+        locate_cuts(studio.demonstrations, context.language, explanation.counterfactuals)
+    )
     content = dict(explanation) | {"counterfactuals": located}
     return ExplanationView(id=record.id, **content, notes=notes)
 

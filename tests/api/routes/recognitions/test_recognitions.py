@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from app.api.services.running_studio import Studio
+from app.api.services.stored_languages import language_of
 from app.api.services.stored_recognitions import locate_cuts
 from app.recognition.explanation.counterfactuals import Counterfactual, Intervention
 from app.recognition.gestures.profile import PROFILES
@@ -120,7 +121,7 @@ def test_what_cannot_be_recognised_says_why(
 def test_a_cut_of_a_demonstration_is_told_with_its_clip(
     studio: Studio, spoken: str, circle_clip: str
 ) -> None:
-    language = studio.language(studio.languages.get(spoken))
+    language = language_of(studio.languages.get(spoken))
     values = {"label": "circle", "demonstration": 0, "start": 0.2, "end": 1.0}
     cut = Counterfactual(
         change=Intervention("demonstration_cut", 0.5, values),
@@ -129,13 +130,13 @@ def test_a_cut_of_a_demonstration_is_told_with_its_clip(
         margin=0.1,
         effect=None,
     )
-    (found,) = locate_cuts(studio, language, [cut])
+    (found,) = locate_cuts(studio.demonstrations, language, [cut])
     told = found.change.to_dict()
     assert told["clip_id"] == circle_clip
     assert told["clip_end"] - told["clip_start"] == pytest.approx(0.8)
     assert found.change.words == cut.change.words
     later = Intervention("demonstration_cut", 0.5, {**values, "demonstration": 1})
-    assert list(locate_cuts(studio, language, [replace(cut, change=later)])) == []
+    assert list(locate_cuts(studio.demonstrations, language, [replace(cut, change=later)])) == []
 
 
 def test_a_recognition_is_explained_by_what_was_meant(
