@@ -265,28 +265,11 @@ def write_confidence(results: Results) -> str:
         for name in ("shipped", "left-out"):
             start = f"{name}/{low:g}-{min(high, 1):g}"
             cells.append(results.show("confidence/all", f"{start}/right", "n?"))
-            cells.append(results.show("confidence/all", f"{start}/confidence", "bare?"))
+            cells.append(f"{results.find('confidence/all', f'{start}/confidence').value:.2f}")
             cells.append(results.show("confidence/all", f"{start}/right", "cell?"))
         rows.append(cells)
     head = ("n", "mean confidence", "right, %")
     return table(("confidence", *head, *(f"left out: {each}" for each in head)), rows)
 
 
-def write_rejection(results: Results) -> str:
-    """Write what the limit rejects and accepts: a row a set of hands or of whole bodies."""
-    rows = []
-    for name in (*SETS, *ARM_CLASSES):
-        cells = [
-            " / ".join(
-                results.show("confidence/all", f"{name}/{kind}/{what}", "bare?")
-                for what in ("rejected", "accepted")
-            )
-            for kind in KINDS
-        ]
-        own = results.show("confidence/all", f"{name}/same/accepted-by-own-limit", "bare")
-        rows.append([name, *cells, own])
-    head = ("set", "same person: rejected / accepted", "another", "3 people, another")
-    return table((*head, "same, limit that rejects 5"), rows)
-
-
-TABLES = {"confidence": write_confidence, "rejection": write_rejection}
+TABLES = {"confidence": write_confidence}

@@ -17,7 +17,7 @@ from app.recognition import Gesture, Language, PoseError, PoseSequence, Recogniz
 from app.recognition.estimation.factory import create_estimator
 from app.recognition.gestures.profile import PROFILES
 from app.recognition.simulation.variation import Person
-from benchmarks.figures import Figure, Measurement, Results, share, table
+from benchmarks.figures import Figure, Measurement, share
 from languages.build import FOLDER, TABLE_2
 
 Shown = tuple[str, PoseSequence]
@@ -95,22 +95,3 @@ def measurements(folder: Path, methods: tuple[str, ...]) -> Iterator[Measurement
             data="simulated takes",
             protocol=f"{count} variants of each gesture of languages/{name}.json, the paper's",
         )
-
-
-def write_protocols(results: Results) -> str:
-    """Write the paper's protocols."""
-    rows = []
-    for name, person in product(VARIANTS, PEOPLE):
-        cells = [
-            results.show(f"samples/{name}", f"{profile}/{person}", "cell") for profile in PROFILES
-        ]
-        n = results.show(f"samples/{name}", f"full/{person}", "n")
-        rejected = results.show(f"samples/{name}", f"full/{person}/rejected", "hits")
-        rows.append([name, "same" if person == "same" else "another", n, *cells, rejected])
-    return table(
-        ("language", "person", "n", *(f"`{each}`, %" for each in PROFILES), "rejected by `full`"),
-        rows,
-    )
-
-
-TABLES = {"protocols": write_protocols}

@@ -28,8 +28,8 @@ TURNS = (0, 30, 45, 60, -45)
 DEPTH_ERROR = 0.05
 """Error of depth in metres: about that of pose models on limbs seen from the front."""
 
-CASES = {"none": "no depth", "known": "depth", "demonstrated": "of the demonstrations alone"}
-"""What knows its depth."""
+CASES = ("none", "known", "demonstrated")
+"""What knows its depth: nothing, takes and demonstrations, or the demonstrations alone."""
 
 
 def measure_turned(folder: Path, name: str, quick: bool) -> Iterator[Figure]:
@@ -84,17 +84,21 @@ def measurements(folder: Path, methods: tuple[str, ...]) -> Iterator[Measurement
 
 
 def write_turned(results: Results) -> str:
-    """Write a row for each set and depth, a column for each turn."""
+    """Write a row for each set, a column for each turn: without depth / with it."""
     rows = [
         [
             name,
-            CASES[case],
-            *(results.show(f"turned/{name}", f"{case}/{turn}", "cell") for turn in TURNS),
+            *(
+                " / ".join(
+                    results.show(f"turned/{name}", f"{case}/{turn}", "bare")
+                    for case in ("none", "known")
+                )
+                for turn in TURNS
+            ),
         ]
         for name in results.names("turned")
-        for case in ("none", "known")
     ]
-    return table(("set", "depth", *(f"{turn} degrees" for turn in TURNS)), rows)
+    return table(("set", *(f"{turn} degrees" for turn in TURNS)), rows)
 
 
 TABLES = {"turned": write_turned}
