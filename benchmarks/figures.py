@@ -295,9 +295,12 @@ def _format(found: Figure, style: str) -> str:
     text = value.rstrip("%") + sign
     if style == "bare" or found.interval is None:
         return text
-    ends = form.replace(".1%", ".0%")
+    # Whole numbers around a narrow share could leave it outside.
+    wide = found.interval[1] - found.interval[0] >= 0.02
+    ends = form.replace(".1%", ".0%") if wide else form
     low, high = (ends.format(end).rstrip("%") for end in found.interval)
-    return f"{text} ({low}{' to ' if found.interval[0] < 0 else '-'}{high})"
+    signed = found.unit == "points" or found.interval[0] < 0
+    return f"{text} ({low}{' to ' if signed else '-'}{high})"
 
 
 Table = Callable[[Results], str]

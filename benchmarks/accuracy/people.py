@@ -247,8 +247,8 @@ def write_people(results: Results) -> str:
         ]
         for name in results.names("people")
     ]
-    head = ("set", "1 person", "1, twice", "2 people", "3", "5", "3 foretell")
-    return table((*head, "above: 2", "above: 3", "above: 5", "single: 3"), rows)
+    head = ("set", "1 person", "1, two takes", "2 people", "3", "5", "foretold from 3")
+    return table((*head, "above, points: 2 people", "3", "5", "single: 3"), rows)
 
 
 def write_live(results: Results) -> str:
@@ -278,7 +278,9 @@ def write_stops(results: Results) -> str:
         ]
         for name in results.names("stops")
     ]
-    return table(("set", "people at the stop", "right, %: one person", "at the stop", "all"), rows)
+    return table(
+        ("set", "people at the stop", "right, %: one person", "at the stop", "seven or eight"), rows
+    )
 
 
 def write_choices(results: Results) -> str:

@@ -124,7 +124,9 @@ def write_triggers(results: Results) -> str:
         ]
         for name in POSES
     ]
-    return table(("pose", "missed, %", "false alarms an hour", "while vehicles are guided"), rows)
+    return table(
+        ("pose", "missed, %", "false alarms an hour, simulated", "while vehicles are guided"), rows
+    )
 
 
 TABLES = {"triggers": write_triggers}

@@ -13,8 +13,7 @@ SIGNS = tuple(entry.label for entry in DIVERS_SIGNS)
 
 NEAREST, ACCEPTED = 21, 19
 """Number of 25 takes by other divers in other water that are nearest to their own sign, and number
-recognised as it. The rest are rejected: *cold*, *go that way*, *look* and *out of air*, of which
-nothing is nearest, and *danger* and *problem*, whose hand is seen from another side."""
+recognised as it, on any processor. Rejected are *cold*, *danger*, *look* and *problem*."""
 
 
 @pytest.fixture(scope="module")
