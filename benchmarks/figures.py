@@ -114,7 +114,7 @@ class Measurement:
     reads
         Files and folders; without one of them the measurement is left out.
     measures
-        Folders of the repository whose change makes the figures old, of `runner.FOLDERS`.
+        Folders of the repository whose change makes the figures old, of `FOLDERS`.
     alone
         Whether nothing may run beside it: it measures time.
 
@@ -345,9 +345,22 @@ def fill(text: str, results: Results, tables: dict[str, Table]) -> str:
 
 
 def read_results(path: Path = RESULTS, trees: dict[str, str] | None = None) -> Results:
-    """Read the file of results; without a file there are none."""
+    """Read the file of results; without a file there are none.
+
+    Raises
+    ------
+    FigureError
+        If the file is damaged.
+
+    """
     if not path.is_file():
         return Results({}, trees or {})
-    content = json.loads(path.read_text("utf-8"))
-    measured = {name: Measured.from_dict(each) for name, each in content["measurements"].items()}
+    try:
+        content = json.loads(path.read_text("utf-8"))["measurements"]
+        measured = {name: Measured.from_dict(each) for name, each in content.items()}
+    except (ValueError, KeyError, TypeError, AttributeError) as error:
+        raise FigureError(
+            f"{path} is damaged ({type(error).__name__}: {error}); nothing was changed. "
+            f"Bring it back: git checkout -- {path}"
+        ) from error
     return Results(measured, trees or {})

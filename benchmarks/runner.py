@@ -29,8 +29,10 @@ from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass, replace
 from hashlib import sha256
 from importlib import import_module
-from multiprocessing import get_context
+from itertools import product
+from multiprocessing import active_children, get_context
 from pathlib import Path
+from signal import SIG_IGN, SIGINT, signal
 from statistics import fmean
 from tempfile import TemporaryDirectory
 from time import monotonic
@@ -50,6 +52,7 @@ from benchmarks.figures import (
     fill,
     read_results,
 )
+from benchmarks.methods import find_method
 
 TOPICS = (
     "benchmarks.accuracy.comparison",
@@ -75,7 +78,7 @@ TOPICS = (
     "benchmarks.cost.server",
     "benchmarks.cost.crashes",
 )
-"""Modules with `measurements`, and `TABLES` if pages quote one. A process imports one."""
+"""Modules with `measurements`, and `TABLES` if pages quote one."""
 
 OUT = ROOT / "benchmarks" / "out"
 
@@ -117,7 +120,7 @@ class Order:
         return {each.name: each for each in found}
 
     def narrow(self, name: str) -> Order:
-        """Return the order of the topic of a measurement alone: a process imports no other."""
+        """Return an order for the one topic with this measurement: a process imports no other."""
         each_alone = (replace(self, topics=(each,)) for each in self.topics)
         return next(order for order in each_alone if name in order.measurements())
 
@@ -139,7 +142,13 @@ def measure(order: Order, name: str, commit: str, trees: dict[str, str]) -> Meas
         data=chosen.data,
         protocol=chosen.protocol,
         people=chosen.people,
-        command=f"python -m benchmarks{' FOLDER' if chosen.reads else ''} --only {name}",
+        command=" ".join(
+            [
+                f"python -m benchmarks{' FOLDER' if chosen.reads else ''} --only {name}",
+                *(["--quick"] if order.quick else []),
+                *(f"--method {each}" for each in order.methods),
+            ]
+        ),
         commit=commit,
         trees={folder: trees[folder] for folder in chosen.measures},
         seconds=round(monotonic() - start, 1),
@@ -169,7 +178,7 @@ class Journal:
                 content = json.loads(line)
                 name, measured = content["name"], Measured.from_dict(content["measured"])
             except (ValueError, KeyError, TypeError, AttributeError):
-                print(f"Line {number} of {path} is damaged: it is measured again.")
+                print(f"Line {number} of {path} is damaged and is not read.")
                 continue
             if measured.commit != commit:
                 aside = path.with_name(f"{path.stem}-{measured.commit[:8]}{path.suffix}")
@@ -229,6 +238,11 @@ def run(
     trees: dict[str, str],
 ) -> bool:
     """Make the measurements that the journal lacks; return whether all of them succeeded."""
+    for each in chosen:
+        kept = journal.measured.get(each.name)
+        if kept and kept.data_hash != each.hash_data():
+            print(f"{each.name} is measured again: the journal has it of other data.")
+            del journal.measured[each.name]
     waiting = [each for each in chosen if each.name not in journal.measured]
     if len(waiting) < len(chosen):
         print(f"{len(chosen) - len(waiting)} of {len(chosen)} are in the journal.")
@@ -258,13 +272,18 @@ def run(
                     print(f"{done}: {name}, {seconds:.0f} s; about {minutes:.0f} min left")
             except KeyboardInterrupt:
                 pool.shutdown(wait=False, cancel_futures=True)
+                for process in active_children():
+                    process.terminate()
                 raise
     return succeeded
 
 
 def _measure_apart(order: Order, name: str, commit: str, trees: dict[str, str]) -> Measured:
     """Measure in a process of its own: what it leaves, and its end, change no other."""
-    with ProcessPoolExecutor(1, mp_context=get_context("spawn")) as pool:
+    # A Ctrl-C reaches all processes of a terminal: the first one alone ends the others.
+    with ProcessPoolExecutor(
+        1, get_context("spawn"), initializer=signal, initargs=(SIGINT, SIG_IGN)
+    ) as pool:
         return pool.submit(measure, order, name, commit, trees).result()
 
 
@@ -299,7 +318,9 @@ def write_results(path: Path, results: Results) -> None:
     text = json.dumps(content, indent=1, ensure_ascii=False)
     # A figure is a line, so that a change of one is seen.
     lines = re.sub(r"\{[^{}]*\}", lambda found: " ".join(found[0].split()), text)
-    path.write_text(f"{lines}\n", "utf-8")
+    partial = path.with_suffix(".partial")
+    partial.write_text(f"{lines}\n", "utf-8")
+    partial.replace(path)
 
 
 def write_pages(results: Results) -> bool:
@@ -368,10 +389,74 @@ def main() -> None:
     given = parser.parse_args()
     try:
         sys.exit(bench(given))
-    except BenchError as error:
-        parser.error(str(error))
+    except (BenchError, FigureError) as error:
+        parser.exit(2, f"{parser.prog}: {error}.\n")
     except KeyboardInterrupt:
-        parser.exit(130, "Broken off; the same command goes on where it was, unless it is quick.\n")
+        lost = given.quick or given.method
+        what = "nothing is kept of it" if lost else "the same command goes on where it was"
+        parser.exit(130, f"Broken off; {what}.\n")
+
+
+def _find_own(name: str) -> None:
+    """Find a method that is named on the command line, before anything is measured."""
+    try:
+        if not callable(find_method(name)):
+            raise TypeError("it is no class")
+    except Exception as error:
+        raise BenchError(
+            f"--method {name}, which is module:Class, cannot be loaded: "
+            f"{type(error).__name__}: {error}"
+        ) from error
+
+
+def _beside(name: str, mine: Measured, before: Results, quick: bool) -> Measured:
+    """Return figures beside those of the others, if these are of the same draws and data."""
+    others = before.measured.get(name)
+    if quick:
+        return mine
+    if others is None:
+        reason = "nobody measured them"
+    elif others.data_hash != mine.data_hash:
+        reason = "they were measured on other data"
+    elif before.is_old(name):
+        reason = "the code has changed since they were measured"
+    else:
+        return mine.beside(others)
+    print(f"{name}: the other methods are left out, {reason}.")
+    return mine
+
+
+def print_own(methods: Sequence[str], names: Sequence[str], results: Results) -> bool:
+    """Print methods of one's own beside the others; return whether they have all figures."""
+    if results.measured:
+        print(f"\n{tables()['nearest'](results)}")
+    complete = True
+    for name, method in product(names, methods):
+        figures = results.measured[name].figures if name in results.measured else {}
+        if not any(each.startswith(f"{method.replace(' ', '-')}/") for each in figures):
+            print(f"{method} has no figures of {name}.")
+            complete = False
+    return complete
+
+
+def find_chosen(given: argparse.Namespace, known: Iterable[Measurement]) -> list[Measurement]:
+    """Return the measurements that the command line asks for.
+
+    Raises
+    ------
+    BenchError
+        If there is none, or it is none of methods.
+
+    """
+    only = given.only or (["comparison"] if given.method else [])
+    chosen = [*choose(known, only)]
+    if not chosen:
+        raise BenchError(
+            "nothing can be measured without these; which sets there are: docs/bench.md"
+        )
+    if given.method and not all(each.name.startswith("comparison/") for each in chosen):
+        raise BenchError("a method of your own is measured by --only comparison, or a set of it")
+    return chosen
 
 
 def bench(given: argparse.Namespace) -> int:
@@ -382,13 +467,11 @@ def bench(given: argparse.Namespace) -> int:
         return 0 if write_pages(before) else 1
     if given.folder is not None and not given.folder.is_dir():
         raise BenchError(f"{given.folder} is not a folder")
+    for name in given.method:
+        _find_own(name)
     order = Order(given.folder, given.quick, tuple(given.method))
     known = order.measurements()
-    chosen = [*choose(known.values(), given.only)]
-    if not chosen:
-        raise BenchError(
-            "nothing can be measured without these; which sets there are: docs/bench.md"
-        )
+    chosen = find_chosen(given, known.values())
     kept = not given.quick and not given.method
     if kept and _git("status", "--porcelain", "--", *CODE):
         raise BenchError("app or benchmarks has changes that are in no commit: commit them first")
@@ -397,12 +480,11 @@ def bench(given: argparse.Namespace) -> int:
     journal = Journal(OUT / ("journal.jsonl" if kept else "trial.jsonl"), _git("rev-parse", "HEAD"))
     os.environ.setdefault("OMP_NUM_THREADS", "1")
     succeeded = run(order, chosen, journal, before, trees)
-    made = {name: each for name, each in journal.measured.items() if name in known}
+    made = {name: journal.measured[name] for name in known if name in journal.measured}
     print_figures(Results(made, trees), [each.name for each in chosen if each.name in made])
     if given.method:
-        made = {name: each.beside(before.measured.get(name)) for name, each in made.items()}
-        write_nearest = tables()["nearest"]
-        print(f"\n{write_nearest(Results(made, trees))}")
+        made = {name: _beside(name, each, before, given.quick) for name, each in made.items()}
+        succeeded &= print_own(given.method, [each.name for each in chosen], Results(made, trees))
     everything = {**before.measured, **made}
     results = Results({name: everything[name] for name in known if name in everything}, trees)
     write_results(RESULTS if kept else OUT / "results.json", results)

@@ -25,6 +25,7 @@ from itertools import chain
 from pathlib import Path
 from statistics import fmean
 from time import process_time
+from traceback import extract_tb
 
 import numpy as np
 
@@ -143,21 +144,23 @@ def measure(make: Callable[[], Method], languages: Sequence[Language]) -> Outcom
     """
     outcomes = Outcomes()
     for language in languages:
-        method, labels = make(), {each.label for each in language.demonstrations}
+        labels = {each.label for each in language.demonstrations}
+        try:
+            method = make()
+        except Exception as error:
+            raise MethodError(_describe(error, "__init__")) from error
         start = process_time()
         try:
             method.fit(language.demonstrations)
         except Exception as error:
-            raise MethodError(f"{type(error).__name__} of `fit`: {error}") from error
+            raise MethodError(_describe(error, "fit")) from error
         outcomes.fitting.append(process_time() - start)
         for relation, takes in language.takes.items():
             for take in takes:
                 label, start = take.label, process_time()
                 said = _predict(method, take.poses)
                 outcomes.predicting.append(process_time() - start)
-                named = {said.label, said.nearest, *(said.pair or ())} - {None}
-                if not named <= labels:
-                    raise MethodError(f"{named - labels} is not in the language {sorted(labels)}")
+                check(said, labels)
                 outcome = judge(said, label, label in labels)
                 outcomes.counts[relation][outcome] += 1
                 if said.label is not None and said.confidence is not None:
@@ -173,7 +176,37 @@ def _predict(method: Method, take: PoseSequence) -> Prediction:
     except OsgError:
         return Prediction()
     except Exception as error:
-        raise MethodError(f"{type(error).__name__} of `predict`: {error}") from error
+        raise MethodError(_describe(error, "predict")) from error
+
+
+def _describe(error: Exception, function: str) -> str:
+    """Return what failed and where: the last line that ran."""
+    last = extract_tb(error.__traceback__)[-1]
+    place = f"{Path(last.filename).name}, line {last.lineno}"
+    return f"{type(error).__name__} of `{function}` ({place}): {error}"
+
+
+def check(said: Prediction, labels: set[str]) -> None:
+    """Check an answer.
+
+    Raises
+    ------
+    MethodError
+        If it is no `Prediction`, names what is not in the language, or has a distance or confidence
+        that is no number.
+
+    """
+    if not isinstance(said, Prediction):
+        raise MethodError(f"`predict` returned {said!r}, not a Prediction")
+    if said.pair is not None and (not isinstance(said.pair, tuple | list) or len(said.pair) != 2):
+        raise MethodError(f"the pair {said.pair!r} is not two labels")
+    for label in (said.label, *(said.pair or ()), *said.distances):
+        if label is not None and (not isinstance(label, str) or label not in labels):
+            raise MethodError(f"{label!r} is not in the language: {', '.join(sorted(labels))}")
+    if np.isnan([*said.distances.values()]).any():
+        raise MethodError("a distance is NaN: is a keypoint missing that the method needs?")
+    if said.confidence is not None and not 0 <= said.confidence <= 1:
+        raise MethodError(f"the confidence {said.confidence!r} is not in [0, 1]")
 
 
 def judge(said: Prediction, label: str, known: bool) -> str:
@@ -181,6 +214,23 @@ def judge(said: Prediction, label: str, known: bool) -> str:
     if said.label is not None:
         return ("right" if said.label == label else "wrong") if known else "answered"
     return "asked" if said.pair is not None else "refused"
+
+
+def require(names: Iterable[str]) -> None:
+    """Check that all methods are installed: a whole run would drop the figures of one that is not.
+
+    Raises
+    ------
+    MethodError
+        If one is not.
+
+    """
+    for name in names:
+        try:
+            find_method(name)
+        except ModuleNotFoundError as error:
+            reason = f'{name} needs {error.name}: pip install -e ".[bench]"'
+            raise MethodError(f"{reason}; its figures stay as they are") from error
 
 
 def find_methods(names: Iterable[str]) -> dict[str, Callable[[], Method]]:
@@ -199,6 +249,10 @@ def compare_on_set(
 ) -> Iterator[Figure]:
     """Draw languages of a set, and yield what every method says of its takes."""
     count, queries = (min(most, 3), 15) if quick else (most, 30)
+    if not quick:
+        require(methods)
+    elif methods != COSTLY:  # the draws are others than those of `results.json`
+        methods = (*METHODS, *methods)
     far = far_movements(trajectories)
     return compare(methods, recorded.name, [*draw_languages(recorded, far, count, queries, 1)])
 
@@ -216,7 +270,7 @@ def compare(methods: tuple[str, ...], data: str, languages: Sequence[Language]) 
         method = name.replace(" ", "-")
         for relation, nearest in outcomes.nearest.items():
             yield share(f"{method}/{relation}", nearest[True], nearest.total())
-        # The other methods here answer each take as a gesture.
+        # Only profiles, and methods of one's own, refuse takes.
         if name not in (*METHODS, *COSTLY) or name in PROFILES:
             yield from count_answers(method, outcomes)
         for cost, mine, theirs in (

@@ -149,3 +149,13 @@ def test_the_hash_of_the_data_is_that_of_every_file_in_it(tmp_path: Path) -> Non
 def test_a_table_is_markdown() -> None:
     written = table(("set", "right"), [["digits", "1"]])
     assert written == "| set | right |\n| --- | --- |\n| digits | 1 |"
+
+
+@pytest.mark.parametrize("text", ["{", "{}", '{"measurements": {"a/b": {}}}'])
+def test_a_damaged_file_of_results_is_named_and_told_how_to_come_back(
+    tmp_path: Path, text: str
+) -> None:
+    path = tmp_path / "results.json"
+    path.write_text(text, "utf-8")
+    with pytest.raises(FigureError, match=r"is damaged .* git checkout"):
+        read_results(path)

@@ -77,7 +77,7 @@ def test_a_run_goes_on_where_it_was_broken_off(
     with path.open("a", encoding="utf-8") as file:
         file.write('{"name": "small/swipes", "measured": {"da')
     journal = Journal(path, COMMIT)
-    assert f"Line 2 of {path} is damaged: it is measured again." in capsys.readouterr().out
+    assert f"Line 2 of {path} is damaged and is not read." in capsys.readouterr().out
     assert run_small(small(), journal, "small/swipes", "small/numbers")
     said = capsys.readouterr().out
     assert "1 of 2 are in the journal." in said
@@ -124,7 +124,7 @@ def test_a_method_that_cannot_learn_is_named_and_the_others_have_their_figures(
     method = "tests.benchmarks.small_topic:Failing"
     assert run_small(small(None, method), journal, "small/compared")
     said = capfd.readouterr().out
-    assert f"{method} has no figures of swipes: ZeroDivisionError of `fit`: of a size" in said
+    assert f"{method} has no figures of swipes: ZeroDivisionError of `fit`" in said
     figures = journal.measured["small/compared"].figures
     assert {name.partition("/")[0] for name in figures} == {"full"}
 
@@ -144,7 +144,7 @@ def test_a_folder_without_sets_is_named(tmp_path: Path, capsys: pytest.CaptureFi
     assert f"comparison/digits is left out: {tmp_path / 'trajectories' / 'madlab3d.npz'}" in said
     assert "nothing can be measured without these; which sets there are: docs/bench.md" in said
     said = bench(capsys, str(tmp_path / "nowhere"))
-    assert said.endswith(f"{tmp_path / 'nowhere'} is not a folder")
+    assert said.endswith(f"{tmp_path / 'nowhere'} is not a folder.")
 
 
 def test_a_copy_without_git_is_told_that_it_is_needed(tmp_path: Path) -> None:

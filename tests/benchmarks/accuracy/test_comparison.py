@@ -112,9 +112,11 @@ def test_a_take_that_cannot_be_compared_counts_as_refused(swipes: list[Language]
 @pytest.mark.parametrize(
     ("said", "words"),
     [
-        (Prediction("circle"), "{'circle'} is not in the language"),
+        (Prediction("circle"), "'circle' is not in the language: left, right, up"),
         (Prediction(pair=("left", "circle")), "'circle'"),
-        (ZeroDivisionError("of a size"), "ZeroDivisionError of `predict`: of a size"),
+        (Prediction(distances={"left": float("nan")}), "a distance is NaN"),
+        (Prediction("left", confidence=95), "the confidence 95 is not in [0, 1]"),
+        (ZeroDivisionError("of a size"), "ZeroDivisionError of `predict` (test_comparison.py"),
     ],
 )
 def test_a_method_that_fails_is_named_with_its_reason(
@@ -128,10 +130,10 @@ def test_the_documented_method_has_its_row(
     swipes: list[Language], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     page = (ROOT / "docs" / "bench.md").read_text("utf-8")
-    (code,) = re.findall(r"```python\n# centroid\.py\n(.*?)```", page, re.DOTALL)
-    (tmp_path / "centroid.py").write_text(code, encoding="utf-8")
+    (code,) = re.findall(r"```python\n# nearest_path\.py\n(.*?)```", page, re.DOTALL)
+    (tmp_path / "nearest_path.py").write_text(code, encoding="utf-8")
     monkeypatch.syspath_prepend(tmp_path)
-    outcomes = measure(find_method("centroid:NearestCentroid"), swipes)
+    outcomes = measure(find_method("nearest_path:NearestPath"), swipes)
     assert sum(outcomes.counts["another-1"].values()) == 16
     assert np.isfinite(outcomes.predicting).all()
 
