@@ -18,7 +18,7 @@ How to write a method, and which sets these are: `docs/bench.md`. The trained me
 from __future__ import annotations
 
 from collections import Counter, defaultdict
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import partial
 from itertools import chain
@@ -216,31 +216,32 @@ def judge(said: Prediction, label: str, known: bool) -> str:
     return "asked" if said.pair is not None else "refused"
 
 
-def require(names: Iterable[str]) -> None:
-    """Check that all methods are installed: a whole run would drop the figures of one that is not.
+def find_methods(names: Iterable[str], *, all_of_them: bool) -> dict[str, Callable[[], Method]]:
+    """Find methods by name.
+
+    Parameters
+    ----------
+    names
+        See `find_method`.
+    all_of_them
+        Whether one that is not installed is an error: a whole run would drop its figures. Else it
+        is named and left out.
 
     Raises
     ------
     MethodError
-        If one is not.
+        If one is not installed.
 
     """
-    for name in names:
-        try:
-            find_method(name)
-        except ModuleNotFoundError as error:
-            reason = f'{name} needs {error.name}: pip install -e ".[bench]"'
-            raise MethodError(f"{reason}; its figures stay as they are") from error
-
-
-def find_methods(names: Iterable[str]) -> dict[str, Callable[[], Method]]:
-    """Find methods by name; those that are not installed are named and left out."""
     found = {}
     for name in names:
         try:
             found[name] = find_method(name)
-        except (ModuleNotFoundError, AttributeError, ValueError) as error:
-            print(f"{name} is left out: {error}", flush=True)
+        except ModuleNotFoundError as error:
+            reason = f'{name} needs {error.name}: pip install -e ".[bench]"'
+            if all_of_them:
+                raise MethodError(f"{reason}; its figures stay as they are") from error
+            print(f"{name} is left out, {reason}", flush=True)
     return found
 
 
@@ -249,18 +250,19 @@ def compare_on_set(
 ) -> Iterator[Figure]:
     """Draw languages of a set, and yield what every method says of its takes."""
     count, queries = (min(most, 3), 15) if quick else (most, 30)
-    if not quick:
-        require(methods)
-    elif methods != COSTLY:  # the draws are others than those of `results.json`
+    if quick and methods != COSTLY:  # the draws are others than those of `results.json`
         methods = (*METHODS, *methods)
+    makers = find_methods(dict.fromkeys((YARDSTICK, *methods)), all_of_them=not quick)
     far = far_movements(trajectories)
-    return compare(methods, recorded.name, [*draw_languages(recorded, far, count, queries, 1)])
+    return compare(makers, recorded.name, [*draw_languages(recorded, far, count, queries, 1)])
 
 
-def compare(methods: tuple[str, ...], data: str, languages: Sequence[Language]) -> Iterator[Figure]:
-    """Yield what every method says of takes, and what it costs."""
+def compare(
+    makers: Mapping[str, Callable[[], Method]], data: str, languages: Sequence[Language]
+) -> Iterator[Figure]:
+    """Yield what every method says of takes, and what it costs; the yardstick is one of them."""
     found: dict[str, Outcomes] = {}
-    for name, make in find_methods(dict.fromkeys((YARDSTICK, *methods))).items():
+    for name, make in makers.items():
         try:
             found[name] = measure(make, languages)
         except MethodError as error:

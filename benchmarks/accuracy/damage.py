@@ -97,7 +97,7 @@ def in_runs(share: float, count: int, random: np.random.Generator) -> Mask:
     return chosen
 
 
-def measure_damage(questions: Sequence[Question], quick: bool) -> Iterator[Figure]:
+def measure_damage(questions: Sequence[Question]) -> Iterator[Figure]:
     """Yield how many takes are nearest right by damage, with the repair and without it."""
     languages = dict.fromkeys(language for language, _, _ in questions)
     recognizers = {
@@ -125,7 +125,7 @@ def measure_set(recorded: RecordedSet, quick: bool) -> Iterator[Figure]:
         language = Language(recorded.name, demonstrated(recorded, draw.templates))
         for query in draw.others if len(draw.others) else draw.own:
             questions.append((language, recorded.recordings[query], str(recorded.labels[query])))
-    yield from measure_damage(questions, quick)
+    yield from measure_damage(questions)
 
 
 def measure_takes(quick: bool) -> Iterator[Figure]:
@@ -133,7 +133,7 @@ def measure_takes(quick: bool) -> Iterator[Figure]:
     demonstrations, tests = read_samples()
     language = teach_samples(demonstrations)
     takes = [(language, poses, label) for label, poses in tests]
-    yield from measure_damage(takes * (1 if quick else 4), quick)
+    yield from measure_damage(takes * (1 if quick else 4))
 
 
 def measurements(folder: Path, methods: tuple[str, ...]) -> Iterator[Measurement]:

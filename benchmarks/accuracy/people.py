@@ -119,8 +119,10 @@ class Tally:
         self.reached.append(Counter(judge(*each)[0] for each in read))
         for result, label in read:
             wrong = str(generator.choice([each for each in language.labels if each != label]))
-            for least in CONFIDENCES if result is not None else ():
-                if result is not None and result.confidence >= least / 100:
+            if result is None:
+                continue
+            for least in CONFIDENCES:
+                if result.confidence >= least / 100:
                     self.live[f"right-from-{least}"] += result.label == label
                     self.live[f"wrong-from-{least}"] += result.label == wrong
 

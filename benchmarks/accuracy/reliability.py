@@ -24,7 +24,7 @@ from app.recognition.decision.outcome import bound_confidence, sum_distances
 from app.recognition.poses.sequence import FloatArray
 from benchmarks.accuracy.people import define
 from benchmarks.figures import Figure, Measurement, Results, share, table
-from benchmarks.sets.every_set import all_sets, find_file
+from benchmarks.sets.every_set import all_sets, find_files
 from benchmarks.sets.one_shot_draws import find_complete_people
 from benchmarks.sets.recorded_sets import SETS, RecordedSet
 from benchmarks.sets.simulated_bodies import CARRIED
@@ -245,7 +245,6 @@ def measure_confidence(folder: Path, quick: bool) -> Iterator[Figure]:
 def measurements(folder: Path, methods: tuple[str, ...]) -> Iterator[Measurement]:
     """Yield one of all sets together: the confidence is fitted without each of them."""
     trajectories = folder / "trajectories"
-    files = (find_file(trajectories, each) for each in (*SETS, *ARM_CLASSES, *CARRIED))
     yield Measurement(
         "confidence/all",
         partial(measure_confidence, trajectories),
@@ -253,7 +252,7 @@ def measurements(folder: Path, methods: tuple[str, ...]) -> Iterator[Measurement
         protocol="40 languages of half of a set's classes by one person or three; 30 takes each by "
         "the same person and by others, half of them of the other classes",
         people=28,
-        reads=tuple(dict.fromkeys(chain.from_iterable(files))),
+        reads=find_files(trajectories, (*SETS, *ARM_CLASSES, *CARRIED)),
     )
 
 

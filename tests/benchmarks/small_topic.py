@@ -11,7 +11,13 @@ from pathlib import Path
 import numpy as np
 
 from app.recognition import PoseSequence
-from benchmarks.accuracy.comparison import YARDSTICK, compare, draw_languages, measure
+from benchmarks.accuracy.comparison import (
+    YARDSTICK,
+    compare,
+    draw_languages,
+    find_methods,
+    measure,
+)
 from benchmarks.figures import Figure, Measurement, Results, Table, share, table
 from benchmarks.methods import find_method
 from benchmarks.methods.base import Demonstration, Method, Prediction
@@ -41,7 +47,8 @@ def ask_about_swipes(quick: bool) -> Iterator[Figure]:
 def compare_swipes(methods: tuple[str, ...], quick: bool) -> Iterator[Figure]:
     """Compare methods on swipes as on recorded sets."""
     (swipes,) = (each for each in drawn_sets() if each.name == "swipes")
-    yield from compare(methods, "swipes", [*draw_languages(swipes, swipes, 1, 4, seed=1)])
+    makers = find_methods((YARDSTICK, *methods), all_of_them=True)
+    yield from compare(makers, "swipes", [*draw_languages(swipes, swipes, 1, 4, seed=1)])
 
 
 def draw_numbers(quick: bool) -> Iterator[Figure]:
