@@ -64,10 +64,8 @@ from app.api.routes.languages import (
     invitations,
     language_files,
     languages,
-    practice,
     revisions,
-    take_tables,
-    test_sets,
+    takes,
 )
 from app.api.routes.recognitions import recognitions
 from app.api.services.identities import Identities, check_tokens
@@ -155,9 +153,7 @@ def _build_routes() -> tuple[BaseRoute, ...]:
         language_files.router,
         revisions.router,
         checks.router,
-        test_sets.router,
-        take_tables.router,
-        practice.router,
+        takes.router,
         invitations.router,
         invited.router,
         choices.router,

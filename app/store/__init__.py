@@ -29,9 +29,8 @@ from app.store.models import (
     PracticeTake,
     RecognitionRecord,
 )
-from app.store.practice import PracticeStore
 from app.store.quotas import NO_QUOTA, Quota, QuotaExceeded, QuotaStore, Usage
 from app.store.recognitions import RecognitionStore
-from app.store.test_sets import LabelledTakeStore, TestedTake, TestSetFull
+from app.store.takes import KnownTake, TakeStore, TestedTake, TestSetFull
 from app.store.tokens import NamedToken, Role, SignInStore, TokenFile
 from app.store.uploads import Upload, UploadStore

@@ -9,7 +9,7 @@ from datetime import timedelta
 from typing import Final
 
 from sqlalchemy import ColumnElement, and_, func, not_, or_, update
-from sqlmodel import col, select
+from sqlmodel import Session, col, select
 
 from app.store.database import DatabaseStore, InvitationClosed, NotFound, TooManyInvitations
 from app.store.models import Invitation, InvitedTake, new_id, now
@@ -82,8 +82,8 @@ class InvitationStore(DatabaseStore):
         with self._database.reading() as session:
             return session.exec(select(Invitation).where(Invitation.sha256 == token_digest)).first()
 
-    def get(self, invitation_id: str) -> Invitation:
-        """Return an invitation.
+    def get(self, invitation_id: str, language_id: str | None = None) -> Invitation:
+        """Return an invitation, to this language if one is given.
 
         Raises
         ------
@@ -92,9 +92,7 @@ class InvitationStore(DatabaseStore):
 
         """
         with self._database.reading() as session:
-            if (found := session.get(Invitation, invitation_id)) is None:
-                raise NotFound(f"there is no invitation {invitation_id!r}")
-            return found
+            return _load(session, invitation_id, language_id)
 
     def of(self, language_id: str) -> list[InvitationState]:
         """Return the invitations of a language with their takes, the newest first.
@@ -131,9 +129,7 @@ class InvitationStore(DatabaseStore):
 
         """
         with self._database.writing() as session:
-            found = session.get(Invitation, invitation_id)
-            if found is None or found.language_id != language_id:
-                raise NotFound(f"there is no invitation {invitation_id!r} to this language")
+            found = _load(session, invitation_id, language_id)
             found.withdrawn = found.withdrawn or now()
 
     def receive(self, invitation_id: str, *, label: str, diver: str, size: int) -> InvitedTake:
@@ -230,6 +226,13 @@ def require_open(invitation: Invitation, size: int) -> None:
 def closed(code: str) -> InvitationClosed:
     """Return the error of an invitation that is closed for this reason, see `REASONS`."""
     return InvitationClosed(REASONS[code], code)
+
+
+def _load(session: Session, invitation_id: str, language_id: str | None) -> Invitation:
+    found = session.get(Invitation, invitation_id)
+    if found is None or language_id not in (None, found.language_id):
+        raise NotFound(f"there is no invitation {invitation_id!r} to this language")
+    return found
 
 
 def _open() -> ColumnElement[bool]:

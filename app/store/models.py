@@ -6,7 +6,7 @@ import json
 import re
 from datetime import UTC, datetime, timedelta
 from enum import StrEnum
-from typing import Any, Final, Literal
+from typing import Any, ClassVar, Final, Literal
 from uuid import uuid4
 
 from sqlalchemy import (
@@ -91,6 +91,13 @@ class JobStatus(StrEnum):
         return self in (JobStatus.DONE, JobStatus.FAILED, JobStatus.CANCELLED)
 
 
+class _Row(SQLModel):
+    """Base of the rows with an id of their own."""
+
+    id: str = Field(default_factory=new_id, primary_key=True, max_length=32)
+    created: datetime = Field(default_factory=now, sa_type=UtcDateTime)
+
+
 class _OwnedRow(SQLModel):
     """Base of the rows that take of somebody's quota."""
 
@@ -100,7 +107,7 @@ class _OwnedRow(SQLModel):
     """Name of the token that made it, to which quotas apply."""
 
 
-class Clip(_OwnedRow, table=True):
+class Clip(_Row, _OwnedRow, table=True):
     """One video, topic of a dive recording, or keypoint file that a user added.
 
     Its file and the results of its job are in the folder `id` of the clip folder.
@@ -108,7 +115,6 @@ class Clip(_OwnedRow, table=True):
 
     __tablename__ = "clip"
 
-    id: str = Field(default_factory=new_id, primary_key=True, max_length=32)
     name: str = Field(max_length=200)
     """The name shown; never used as a path."""
     media_type: str = Field(max_length=64)
@@ -163,7 +169,7 @@ class Clip(_OwnedRow, table=True):
         return bool(self.topics) and self.topic is None
 
 
-class Job(SQLModel, table=True):
+class Job(_Row, table=True):
     """The extraction of poses and hands from one clip."""
 
     __tablename__ = "job"
@@ -173,7 +179,6 @@ class Job(SQLModel, table=True):
         ),
     )
 
-    id: str = Field(default_factory=new_id, primary_key=True, max_length=32)
     clip_id: str = Field(foreign_key="clip.id", ondelete="CASCADE", index=True, max_length=32)
     client: str = Field(max_length=64)
     """Address that requested it; the queue limit is per client."""
@@ -199,12 +204,11 @@ class Job(SQLModel, table=True):
     finished: datetime | None = Field(default=None, sa_type=UtcDateTime)
 
 
-class LanguageRecord(SQLModel, table=True):
+class LanguageRecord(_Row, table=True):
     """A language's identity; its content is in its revisions."""
 
     __tablename__ = "language"
 
-    id: str = Field(default_factory=new_id, primary_key=True, max_length=32)
     head: int
     """Number of the newest revision."""
     sample: bool = False
@@ -237,16 +241,33 @@ class LanguageRevision(_OwnedRow, table=True):
     created: datetime = Field(default_factory=now, sa_type=UtcDateTime)
 
 
-class _TakeRow(SQLModel):
+class _TakeRow(_Row):
     """Base of the rows about a take in a clip for a language, and removed with either."""
 
-    id: str = Field(default_factory=new_id, primary_key=True, max_length=32)
     language_id: str = Field(
         foreign_key="language.id", ondelete="CASCADE", index=True, max_length=32
     )
     clip_id: str = Field(foreign_key="clip.id", ondelete="CASCADE", index=True, max_length=32)
     start: float
     """Seconds in the clip."""
+
+
+class _KnownTake(_TakeRow):
+    """Base of the takes whose gesture is known."""
+
+    expected: str = Field(max_length=200)
+    """The label that it should be recognised as; empty: none of the gestures."""
+    added_by: str = Field(default="", max_length=80, sa_column_kwargs={"server_default": ""})
+    """Name of the token that added it; empty: not known, or none is needed."""
+
+
+class _Answer(SQLModel):
+    """Base of the rows about how a take was recognised."""
+
+    label: str | None = Field(default=None, max_length=200)
+    """The label recognised; ``None``: a pair, or rejected."""
+    pair: list[str] | None = Field(default=None, sa_type=Json)
+    """The two gestures between which the take lies; ``None``: no two."""
 
 
 class RecognitionRecord(_TakeRow, _OwnedRow, table=True):
@@ -266,24 +287,19 @@ class RecognitionRecord(_TakeRow, _OwnedRow, table=True):
     created: datetime = Field(default_factory=now, sa_type=UtcDateTime, index=True)
 
 
-class LabelledTake(_TakeRow, table=True):
+class LabelledTake(_KnownTake, table=True):
     """A take whose gesture is known: a query of its language's test set."""
 
     __tablename__ = "labelled_take"
     __table_args__ = (UniqueConstraint("language_id", "clip_id", "start", name="labelled_range"),)
 
     end: float
-    expected: str = Field(max_length=200)
-    """The label that it should be recognised as; empty: none of the gestures."""
     former: list[str] | None = Field(default=None, sa_type=Json)
     """Digests of the demonstrations of the movement that it shows, since its gesture got another
     one; ``None``: it has not."""
-    added_by: str = Field(default="", max_length=80, sa_column_kwargs={"server_default": ""})
-    """Name of the token that added it; empty: not known, or none is needed."""
-    created: datetime = Field(default_factory=now, sa_type=UtcDateTime)
 
 
-class LabelledResult(SQLModel, table=True):
+class LabelledResult(_Answer, table=True):
     """Result of a labelled take with one revision of its language."""
 
     __tablename__ = "labelled_result"
@@ -294,39 +310,30 @@ class LabelledResult(SQLModel, table=True):
     revision: int = Field(primary_key=True)
     recognition_id: str | None = Field(default=None, max_length=32)
     """The recognition; ``None`` if there is none, for the reason in `fault`."""
-    label: str | None = Field(default=None, max_length=200)
-    pair: list[str] | None = Field(default=None, sa_type=Json)
-    """The two gestures between which the take lies; ``None``: no two."""
     nearest: str | None = Field(default=None, max_length=200)
     confidence: float = 0.0
     fault: str | None = Field(default=None, sa_column=Column(Text))
     created: datetime = Field(default_factory=now, sa_type=UtcDateTime)
 
 
-class PracticeTake(_TakeRow, table=True):
+class PracticeTake(_KnownTake, _Answer, table=True):
     """A gesture that a diver was asked to show, and its recognition."""
 
     __tablename__ = "practice_take"
 
+    end: ClassVar[None] = None
+    """It is the take of its clip that begins at `start`."""
+    former: ClassVar[None] = None
     diver: str = Field(max_length=80)
-    expected: str = Field(max_length=200)
-    label: str | None = Field(default=None, max_length=200)
-    """The label recognised; ``None``: a pair, or rejected."""
-    pair: list[str] | None = Field(default=None, sa_type=Json)
-    """The two gestures between which the take lies; ``None``: no two."""
     revision: int
     recognition_id: str = Field(max_length=32)
-    added_by: str = Field(default="", max_length=80, sa_column_kwargs={"server_default": ""})
-    """Name of the token that added it; empty: not known, or none is needed."""
-    created: datetime = Field(default_factory=now, sa_type=UtcDateTime)
 
 
-class Invitation(SQLModel, table=True):
+class Invitation(_Row, table=True):
     """A link by which other people add their takes to one language, and can do nothing else."""
 
     __tablename__ = "invitation"
 
-    id: str = Field(default_factory=new_id, primary_key=True, max_length=32)
     language_id: str = Field(
         foreign_key="language.id", ondelete="CASCADE", index=True, max_length=32
     )
@@ -341,7 +348,6 @@ class Invitation(SQLModel, table=True):
     takes: int = 0
     """Takes sent so far."""
     bytes: int = Field(default=0, sa_type=ByteCount)
-    created: datetime = Field(default_factory=now, sa_type=UtcDateTime)
     expires: datetime = Field(sa_type=UtcDateTime)
     withdrawn: datetime | None = Field(default=None, sa_type=UtcDateTime)
 
@@ -357,7 +363,7 @@ ANSWER_TIME: Final = timedelta(minutes=10)
 """Time in which a diver who is asked about a take may answer, before it waits for its owner."""
 
 
-class InvitedTake(SQLModel, table=True):
+class InvitedTake(_Row, table=True):
     """A take that somebody sent by an invitation."""
 
     __tablename__ = "invited_take"
@@ -368,7 +374,6 @@ class InvitedTake(SQLModel, table=True):
         ),
     )
 
-    id: str = Field(default_factory=new_id, primary_key=True, max_length=32)
     invitation_id: str = Field(
         foreign_key="invitation.id", ondelete="CASCADE", index=True, max_length=32
     )
@@ -390,7 +395,6 @@ class InvitedTake(SQLModel, table=True):
     """When the person who shows was asked about it."""
     claimed: datetime | None = Field(default=None, sa_type=UtcDateTime)
     """When a server last began to judge it."""
-    created: datetime = Field(default_factory=now, sa_type=UtcDateTime)
 
     @property
     def held(self) -> bool:

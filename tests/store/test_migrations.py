@@ -16,7 +16,7 @@ from sqlmodel import SQLModel
 from app.api.jobs.extraction_queue import options_of
 from app.clip_sources import ReadOptions
 from app.recognition import Language
-from app.store import ClipStore, Database, LabelledTakeStore, LanguageStore, RecognitionStore
+from app.store import ClipStore, Database, LanguageStore, RecognitionStore, TakeStore
 from app.store.database import MIGRATIONS
 
 
@@ -115,5 +115,5 @@ def test_a_database_of_a_former_version_keeps_all_that_is_in_it(
     (recognised,) = RecognitionStore(database).all(limit=10)
     assert (recognised.clip_id, recognised.start, recognised.expected) == ("c" * 32, 0.5, "circle")
     assert languages.seeded() == {"osg-table"}
-    (take,) = LabelledTakeStore(database).of("a" * 32)
+    (take,) = TakeStore(database).tested("a" * 32)
     assert (take.take.start, take.take.expected) == (0.5, "circle")

@@ -64,8 +64,7 @@ class Studio:
 
     Attributes
     ----------
-    clips, uploads, quotas, jobs, languages, recognitions, audit, labelled, practice, invitations,
-    sign_ins
+    clips, uploads, quotas, jobs, languages, recognitions, audit, takes, invitations, sign_ins
         The store.
     demonstrations
         Knows from which clips demonstrations come.
@@ -101,8 +100,7 @@ class Studio:
         self.languages = store.LanguageStore(database)
         self.recognitions = store.RecognitionStore(database)
         self.audit = store.AuditStore(database, settings.data_dir)
-        self.labelled = store.LabelledTakeStore(database)
-        self.practice = store.PracticeStore(database)
+        self.takes = store.TakeStore(database)
         self.invitations = store.InvitationStore(database)
         self.sign_ins = store.SignInStore(database)
         self.demonstrations = Demonstrations(self.clips, store.SourceStore(database))
@@ -244,7 +242,6 @@ Invitations = Annotated[store.InvitationStore, _part(lambda studio: studio.invit
 Jobs = Annotated[store.JobStore, _part(lambda studio: studio.jobs)]
 KnownDemonstrations = Annotated[Demonstrations, _part(lambda studio: studio.demonstrations)]
 Languages = Annotated[store.LanguageStore, _part(lambda studio: studio.languages)]
-Practice = Annotated[store.PracticeStore, _part(lambda studio: studio.practice)]
 Quotas = Annotated[store.QuotaStore, _part(lambda studio: studio.quotas)]
 Recognitions = Annotated[store.RecognitionStore, _part(lambda studio: studio.recognitions)]
 Runner = Annotated[JobRunner, _part(lambda studio: studio.runner)]

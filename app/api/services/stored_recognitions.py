@@ -251,16 +251,6 @@ def write_notes(
     return notes
 
 
-def list_known(studio: Studio, language_id: str) -> list[store.LabelledTake | store.PracticeTake]:
-    """Return the takes of the test set and of practice, the oldest first, each range once."""
-    tested = [each.take for each in studio.labelled.of(language_id)]
-    takes: list[store.LabelledTake | store.PracticeTake] = [
-        *tested,
-        *studio.practice.of(language_id),
-    ]
-    return list({(each.clip_id, round(each.start, 2)): each for each in takes}.values())
-
-
 def load_known(
     studio: Studio, language_id: str, recognizer: Recognizer, *, but: str | None = None
 ) -> Iterator[KnownTake]:
@@ -284,18 +274,16 @@ def load_known(
     language = recognizer.language
     own = OwnDemonstrations(studio.demonstrations, language)
     count, apart = 0, set[LeftOut]()
-    for take in reversed(list_known(studio, language_id)):
-        former = take.former if isinstance(take, store.LabelledTake) else None
+    for take in reversed(studio.takes.known(language_id)):
         if take.clip_id == but or take.expected not in language.labels:
             continue
-        if own.show_former(take.expected, former):
+        if own.show_former(take.expected, take.former):
             continue
         if count == MOST_KNOWN_TAKES:
             return
-        end = take.end if isinstance(take, store.LabelledTake) else None
         try:
             recording = recording_of(studio.clips, take.clip_id)
-            found = find_clip_range(recording, take.start, end, trigger=language.trigger)
+            found = find_clip_range(recording, take.start, take.end, trigger=language.trigger)
             without = own.find(take.clip_id, found.start, found.end)
             is_new = without and without not in apart
             if not own.leave_one(take.expected, without) or (is_new and len(apart) == MOST_APART):

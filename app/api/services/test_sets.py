@@ -32,7 +32,7 @@ from app.evaluation.share import Share
 from app.recognition.decision.result import Pair
 from app.recognition.health.finding import TestedGesture
 from app.recognition.recording.clip_range import find_clip_range
-from app.store.test_sets import MOST_TAKES
+from app.store.takes import MOST_TAKES
 
 
 class LabelledTakeDraft(RequiredGesture):
@@ -181,7 +181,7 @@ def add_labelled(
         for draft in drafts
         for start, end in _ranges(studio.clips, draft, state)
     ]
-    studio.labelled.add(takes)
+    studio.takes.add(takes)
 
 
 def test_run_key(language_id: str, revision: int) -> str:
@@ -299,7 +299,7 @@ def _keep(
         result.label, result.nearest = answer["label"], answer["nearest"]
         result.pair = answer["pair"]
         result.confidence = answer["confidence"]
-    studio.labelled.keep(result, take.expected)
+    studio.takes.keep(result, take.expected)
 
 
 def _ranges(
@@ -418,7 +418,7 @@ def _view_takes(
 ) -> Iterator[tuple[store.LabelledTake, LeftOut, LabelledTakeView]]:
     """Yield each take of a language, the demonstrations that it is itself, and what is shown."""
     own = OwnDemonstrations(studio.demonstrations, language_of(state))
-    for tested in studio.labelled.of(state.record.id):
+    for tested in studio.takes.tested(state.record.id):
         take = tested.take
         without = own.find(take.clip_id, take.start, take.end)
         yield take, without, _view(studio.recognitions, tested, own, without)

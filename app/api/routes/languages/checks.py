@@ -28,7 +28,7 @@ from app.api.services.gesture_edits import gesture_in
 from app.api.services.limited_routes import computed, computed_briefly
 from app.api.services.running_studio import CurrentStudio, Studio
 from app.api.services.stored_languages import DocumentCache, language_of, recognizer_of
-from app.api.services.stored_recognitions import list_known, load_known
+from app.api.services.stored_recognitions import load_known
 from app.api.services.test_sets import list_tested
 from app.api.workers.tasks import Check
 from app.api.workers.worker_messages import Failed, Finished
@@ -147,7 +147,7 @@ def _find_faults(studio: Studio, state: LanguageState) -> list[dict[str, Any]]:
         if faults
     ]
     seen = {label for label, _ in told}
-    if takes := list_known(studio, state.record.id):
+    if takes := studio.takes.known(state.record.id):
         ranges = tuple((each.clip_id, each.start, each.expected) for each in takes)
         blamed = _blame_by(studio, state.record.id, state.revision.revision, ranges)
         told += [each for each in blamed if each[0] not in seen]

@@ -239,7 +239,7 @@ def replace_gesture(draft: ReplacementDraft, edit: CurrentEdit) -> LanguageView:
 
     state = edit.save(f"Change the movement of {draft.label}", edit_language)
     if former:
-        edit.studio.labelled.set_aside(edit.language_id, draft.label, former)
+        edit.studio.takes.set_aside(edit.language_id, draft.label, former)
     if where is not None and shown is not None:
         edit.studio.demonstrations.keep(state, draft.label, where, shown)
     return edit.answer(state)

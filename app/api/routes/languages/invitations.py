@@ -16,7 +16,7 @@ from app.api.services.stored_languages import language_of, recognizer_of
 from app.api.services.stored_recognitions import load_known
 from app.recognition import Recognizer
 from app.recognition.explanation.context import KnownTakes
-from app.store import InvitationState, InvitationStore, InvitedTake, NotFound
+from app.store import InvitationState, InvitationStore, InvitedTake
 from app.ui.charts import data_url, mark_gesture
 from app.ui.qr_code import draw_qr_code
 
@@ -127,8 +127,7 @@ def _find_take(
     invitations: InvitationStore, language_id: str, invitation_id: str, take_id: str
 ) -> InvitedTake:
     """Return a take of an invitation to a language that is neither returned nor looked at."""
-    if invitations.get(invitation_id).language_id != language_id:
-        raise NotFound(f"there is no invitation {invitation_id!r} to this language")
+    invitations.get(invitation_id, language_id)
     take = invitations.take(invitation_id, take_id)
     if not take.held and take.status not in ("added", "removed"):
         raise ProblemError(409, "take_not_held", "this take was returned, or is looked at still")

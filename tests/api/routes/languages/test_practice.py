@@ -9,7 +9,7 @@ from typing import Any
 import httpx
 import pytest
 
-from app.api.routes.languages import practice
+from app.api.routes.languages import takes
 from app.api.services.running_studio import Studio
 from app.api.services.stored_recognitions import recognize_range
 from tests.api.http.test_connection import begin
@@ -87,7 +87,7 @@ def test_a_take_whose_client_leaves_is_in_the_audit_log(
         assert go_on.wait(PATIENCE_SECONDS)
         return recognize_range(*given, **named)
 
-    monkeypatch.setattr(practice, "recognize_range", recognize_slowly)
+    monkeypatch.setattr(takes, "recognize_range", recognize_slowly)
     body = json.dumps({"diver": "Ana", "expected": "circle", "clip_id": circle}).encode()
     with begin(server, "POST", place, body):
         until(began.is_set)

@@ -13,7 +13,7 @@ import pytest
 
 from app.api.events.broadcast import Broadcast
 from app.api.jobs.job import JobCancelled, JobRunner
-from app.api.routes.languages.take_tables import take_table_job
+from app.api.routes.languages.takes import take_table_job
 from app.api.workers.worker_messages import Progress
 from app.evaluation.take_table import COLUMNS, Row
 from app.store import Clip

@@ -11,22 +11,22 @@ from app.store import (
     Database,
     LabelledResult,
     LabelledTake,
-    LabelledTakeStore,
     LanguageStore,
     NotFound,
     RecognitionRecord,
     RecognitionStore,
+    TakeStore,
     TestSetFull,
 )
 from app.store.database import MIGRATIONS
-from app.store.test_sets import KEPT_RESULTS
+from app.store.takes import KEPT_RESULTS
 from tests.store.conftest import add_clip
 from tests.store.test_languages import draft
 
 
 @pytest.fixture
-def store(database: Database) -> LabelledTakeStore:
-    return LabelledTakeStore(database)
+def store(database: Database) -> TakeStore:
+    return TakeStore(database)
 
 
 @pytest.fixture
@@ -41,18 +41,18 @@ def again(take: LabelledTake, **changes: object) -> LabelledTake:
 
 
 def test_a_range_is_in_the_set_once_with_its_newest_label(
-    store: LabelledTakeStore, take: LabelledTake
+    store: TakeStore, take: LabelledTake
 ) -> None:
     (kept,) = store.add([take])
     store.keep(LabelledResult(take_id=kept.id, revision=1, label="circle"), "circle")
     (relabelled,) = store.add([again(take, expected="line")])
-    (tested,) = store.of(take.language_id)
+    (tested,) = store.tested(take.language_id)
     assert relabelled.id == kept.id == tested.take.id
     assert (tested.clip, tested.take.expected, tested.results) == ("dive.mp4", "line", ())
 
 
 def test_results_are_kept_newest_first_and_only_the_newest(
-    store: LabelledTakeStore, database: Database, take: LabelledTake
+    store: TakeStore, database: Database, take: LabelledTake
 ) -> None:
     (kept,) = store.add([take])
     recognitions = RecognitionStore(database)
@@ -71,52 +71,50 @@ def test_results_are_kept_newest_first_and_only_the_newest(
         )
         result = LabelledResult(take_id=kept.id, revision=revision, recognition_id=record.id)
         assert store.keep(result, "circle")
-    (tested,) = store.of(take.language_id)
+    (tested,) = store.tested(take.language_id)
     newest = [result.revision for result in tested.results]
     assert newest == [KEPT_RESULTS + 2, KEPT_RESULTS + 1, KEPT_RESULTS]
     assert len(recognitions.all(language_id=take.language_id, limit=99)) == KEPT_RESULTS
 
 
-def test_a_result_for_another_label_is_not_kept(
-    store: LabelledTakeStore, take: LabelledTake
-) -> None:
+def test_a_result_for_another_label_is_not_kept(store: TakeStore, take: LabelledTake) -> None:
     (kept,) = store.add([take])
     store.label(take.language_id, kept.id, "line")
     assert not store.keep(LabelledResult(take_id=kept.id, revision=1), "circle")
-    store.remove(take.language_id, kept.id)
+    store.remove(LabelledTake, take.language_id, kept.id)
     assert not store.keep(LabelledResult(take_id=kept.id, revision=1), "line")
-    assert store.of(take.language_id) == []
+    assert store.tested(take.language_id) == []
 
 
 def test_a_take_of_another_language_is_not_found(
-    store: LabelledTakeStore, languages: LanguageStore, take: LabelledTake
+    store: TakeStore, languages: LanguageStore, take: LabelledTake
 ) -> None:
     (kept,) = store.add([take])
     other = languages.create(draft()).record.id
     with pytest.raises(NotFound):
         store.label(other, kept.id, "line")
     with pytest.raises(NotFound):
-        store.remove(other, kept.id)
+        store.remove(LabelledTake, other, kept.id)
 
 
 def test_takes_of_deleted_clips_are_hidden_and_come_back(
-    store: LabelledTakeStore, clips: ClipStore, take: LabelledTake
+    store: TakeStore, clips: ClipStore, take: LabelledTake
 ) -> None:
     store.add([take])
     clips.delete(take.clip_id)
-    assert store.of(take.language_id) == []
+    assert store.tested(take.language_id) == []
     clips.restore(take.clip_id)
-    assert len(store.of(take.language_id)) == 1
+    assert len(store.tested(take.language_id)) == 1
 
 
 def test_a_set_that_is_full_takes_none_of_the_new_ones(
-    store: LabelledTakeStore, take: LabelledTake, monkeypatch: pytest.MonkeyPatch
+    store: TakeStore, take: LabelledTake, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("app.store.test_sets.MOST_TAKES", 2)
+    monkeypatch.setattr("app.store.takes.MOST_TAKES", 2)
     store.add([take])
     with pytest.raises(TestSetFull, match="at most 2"):
         store.add([again(take, start=3.0), again(take, start=4.0)])
-    assert len(store.of(take.language_id)) == 1
+    assert len(store.tested(take.language_id)) == 1
 
 
 def test_the_recognitions_that_were_the_test_become_the_test_set(tmp_path: Path) -> None:

@@ -1,18 +1,29 @@
-"""Store of test sets: takes of each language whose gesture is known, and their results."""
+"""Store of takes whose gesture is known: of test sets and of practice, with their results."""
 
 from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TypeVar
 
 from sqlmodel import Session, col, delete, select, update
 
 from app.store.database import DatabaseStore, NotFound, StoreError
-from app.store.models import Clip, LabelledResult, LabelledTake, RecognitionRecord
+from app.store.models import (
+    Clip,
+    LabelledResult,
+    LabelledTake,
+    PracticeTake,
+    RecognitionRecord,
+)
 
 MOST_TAKES = 500
 """Most takes of a language's test set: more would delay every change of the language by minutes."""
+
+MOST_PRACTISED = 5000
+"""Number of a language's newest takes of practice that are counted: an acceptance test of a hundred
+divers."""
 
 KEPT_RESULTS = 3
 """Number of newest results kept for a take: the current, the previous, and one for an undo."""
@@ -46,8 +57,17 @@ class TestedTake:
     results: tuple[LabelledResult, ...]
 
 
-class LabelledTakeStore(DatabaseStore):
-    """Keeps the test sets of languages in `database`; takes of deleted clips are hidden."""
+KnownTake = LabelledTake | PracticeTake
+"""A take whose gesture is known."""
+
+Known = TypeVar("Known", LabelledTake, PracticeTake)
+
+
+class TakeStore(DatabaseStore):
+    """Keeps the test sets and the practice of languages in `database`.
+
+    Takes are removed with their purged clips; in test sets, those of deleted clips are hidden.
+    """
 
     def add(self, takes: Sequence[LabelledTake]) -> list[LabelledTake]:
         """Add takes of one language; a take that exists already gets the new label.
@@ -80,7 +100,7 @@ class LabelledTakeStore(DatabaseStore):
 
         """
         with self._database.writing() as session:
-            take = _load(session, language_id, take_id)
+            take = _load(session, LabelledTake, language_id, take_id)
             take.former = None
             if take.expected != expected:
                 take.expected = expected
@@ -99,21 +119,21 @@ class LabelledTakeStore(DatabaseStore):
                 .values(former=[*former])
             )
 
-    def remove(self, language_id: str, take_id: str) -> None:
-        """Remove a take and its results.
+    def remove(self, kind: type[Known], language_id: str, take_id: str) -> None:
+        """Remove a take of this kind and its results.
 
         Raises
         ------
         NotFound
-            When the language's test set has no such take.
+            When the language has no such take.
 
         """
         with self._database.writing() as session:
-            take = _load(session, language_id, take_id)
+            take = _load(session, kind, language_id, take_id)
             _forget(session, take_id)
             session.delete(take)
 
-    def of(self, language_id: str) -> list[TestedTake]:
+    def tested(self, language_id: str) -> list[TestedTake]:
         """Return the takes of a language's test set, by clip and time."""
         with self._database.reading() as session:
             rows = session.exec(
@@ -132,6 +152,36 @@ class LabelledTakeStore(DatabaseStore):
         for result in found:
             results[result.take_id].append(result)
         return [TestedTake(take, name, tuple(results[take.id])) for take, name in rows]
+
+    def practised(self, language_id: str) -> list[PracticeTake]:
+        """Return the takes of a language's practice, the newest first."""
+        with self._database.reading() as session:
+            query = (
+                select(PracticeTake)
+                .where(PracticeTake.language_id == language_id)
+                .order_by(col(PracticeTake.created).desc())
+                .limit(MOST_PRACTISED)
+            )
+            return list(session.exec(query))
+
+    def known(self, language_id: str) -> list[KnownTake]:
+        """Return the takes of test set and practice, the oldest first, each range once."""
+        tested = [each.take for each in self.tested(language_id)]
+        takes: list[KnownTake] = [*tested, *self.practised(language_id)]
+        return list({(each.clip_id, round(each.start, 2)): each for each in takes}.values())
+
+    def practise(self, take: PracticeTake) -> None:
+        """Store a take of practice; it replaces the same take recognised by the same revision."""
+        with self._database.writing() as session:
+            session.exec(
+                delete(PracticeTake).where(
+                    col(PracticeTake.language_id) == take.language_id,
+                    col(PracticeTake.revision) == take.revision,
+                    col(PracticeTake.clip_id) == take.clip_id,
+                    col(PracticeTake.start) == take.start,
+                )
+            )
+            session.add(take)
 
     def keep(self, result: LabelledResult, expected: str) -> bool:
         """Store a result and remove old ones; False if the take is removed or has another label."""
@@ -169,10 +219,10 @@ def _put(session: Session, take: LabelledTake) -> LabelledTake:
     return there
 
 
-def _load(session: Session, language_id: str, take_id: str) -> LabelledTake:
-    take = session.get(LabelledTake, take_id)
+def _load(session: Session, kind: type[Known], language_id: str, take_id: str) -> Known:
+    take = session.get(kind, take_id)
     if take is None or take.language_id != language_id:
-        raise NotFound(f"there is no take {take_id!r} in the test set of this language")
+        raise NotFound(f"this language has no take {take_id!r}")
     return take
 
 
