@@ -11,12 +11,3 @@ export function isMirrored(source) {
   if (!source || !("getVideoTracks" in source)) return false;
   return source.getVideoTracks()[0]?.getSettings().facingMode !== "environment";
 }
-
-/**
- * Mirror the picture of a video where its source asks for it.
- *
- * @param {HTMLElement} picture
- * @param {HTMLVideoElement} video
- */
-export const mirror = (picture, video) =>
-  picture.classList.toggle("mirrored", isMirrored(video.srcObject));

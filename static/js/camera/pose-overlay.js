@@ -16,14 +16,13 @@ const HAND_BONES = bonesAlong([
 ]);
 
 /**
- * Lay an empty drawing over the picture of a video.
+ * Make an empty drawing that lies over the picture of a video.
  *
  * @param {HTMLVideoElement} video
  */
 export function overlay(video) {
   const drawing = skeleton(video.videoWidth, video.videoHeight);
   drawing.append(svg("path", { class: "hand-bones", d: "" }));
-  video.after(drawing);
   return drawing;
 }
 

@@ -45,6 +45,8 @@ function nameAt(what, date, type) {
   return `${what} ${day} ${hour}.${type.startsWith("video/mp4") ? "mp4" : "webm"}`;
 }
 
+/** @typedef {ReturnType<typeof record>} Recording */
+
 /**
  * Record a stream. `stop(what)` resolves to the file, whose name is `what` and the time at which it
  * began, or to null when nothing was recorded.

@@ -1,7 +1,5 @@
 // The source of live frames: a camera, or a clip played as if live.
 
-import { h } from "../core/dom.js";
-
 const LONGEST_SIDE = 960; // px. The models look at a hand in 224; a smaller picture would blur it.
 const QUALITY = 0.8; // of the JPEG: a fifth of the bytes of 0.95, and the same landmarks.
 const CLIP_STEP = 1 / 12; // s. A salute is held for 0.3 s: at least three frames of it are seen.
@@ -80,24 +78,23 @@ export async function showCamera(video, deviceId, lost) {
 }
 
 /**
- * List the available cameras and select the one on display; hidden if there is only one. The
- * browser names cameras only after the user has allowed one.
+ * The cameras to choose from, and the one on display, or else the `chosen` one. The browser names
+ * cameras only after the user has allowed one.
  *
- * @param {HTMLSelectElement} choice
  * @param {HTMLVideoElement} video
+ * @param {string} chosen
  */
-export async function offerCameras(choice, video) {
+export async function listCameras({ srcObject }, chosen) {
   const devices = await navigator.mediaDevices.enumerateDevices();
   const found = devices.filter(({ kind, deviceId }) => kind === "videoinput" && deviceId);
-  const { srcObject } = video;
   const current =
     srcObject instanceof MediaStream && srcObject.getVideoTracks()[0]?.getSettings().deviceId;
-  choice.hidden = found.length < 2;
-  choice.replaceChildren(
-    ...found.map(({ deviceId, label }) =>
-      h("option", { value: deviceId, selected: deviceId === current }, label || "Camera"),
+  return {
+    device: current || chosen,
+    cameras: found.map(
+      ({ deviceId, label }) => /** @type {[string, string]} */ ([deviceId, label || "Camera"]),
     ),
-  );
+  };
 }
 
 /**

@@ -4,8 +4,7 @@ import { tabStore } from "../core/browser-store.js";
 import { byId } from "../core/dom.js";
 import { about, plural } from "../core/format.js";
 import { html, nothing, progressBar, render } from "../templates.js";
-import { follow, queueOf, secondsLeft } from "./batch.js";
-import { BUSY } from "./busy.js";
+import { BUSY, follow, queueOf, secondsLeft } from "./batch.js";
 
 /** @import { Batch, Clip, Job, State } from "../core/types.d.ts" */
 

@@ -1,8 +1,13 @@
 // The clips whose poses are found one after the other: how many are done, and the time for all.
 
-import { BUSY } from "./busy.js";
-
 /** @import { Batch, Clip, Job } from "../core/types.d.ts" */
+
+/**
+ * The states of a clip whose poses are still to be found.
+ *
+ * @type {Set<Clip["status"]>}
+ */
+export const BUSY = new Set(["queued", "running"]);
 
 const LEAST_FRAMES = 20; // frames done before a rate is computed
 const FRAMES_UNKNOWN = 200; // assumed for a clip whose container has no count

@@ -3,7 +3,7 @@
 import * as api from "../core/api.js";
 import { state, update } from "../core/state.js";
 import { attempt } from "../core/toasts.js";
-import { BUSY } from "./busy.js";
+import { BUSY } from "./batch.js";
 import { clipsOfDemonstrations } from "./demonstration-ranges.js";
 
 /** @import { Clip, ClipPage, State } from "../core/types.d.ts" */

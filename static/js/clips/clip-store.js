@@ -8,7 +8,7 @@ import { placeIn, state, update } from "../core/state.js";
 import { registerUndo } from "../core/undo.js";
 import { placeInQueue } from "./batch-card.js";
 import { forget, newestFirst, take } from "./clip-pages.js";
-import { BUSY } from "./busy.js";
+import { BUSY } from "./batch.js";
 
 /** @import { Clip, Job } from "../core/types.d.ts" */
 

@@ -4,14 +4,16 @@ import { demonstratedBy } from "../clips/demonstration-ranges.js";
 import { olderClipsButton } from "../clips/older-clips.js";
 import { saveFile } from "../clips/mcap-export.js";
 import { select } from "../clips/clip-store.js";
+import { takeRow, takesTable } from "../clips/takes.js";
 import * as api from "../core/api.js";
 import { closeDialog, showDialog } from "../core/dialogs.js";
 import { byId, h } from "../core/dom.js";
 import { moment, percent, plural, timeLeft } from "../core/format.js";
 import { follow, state, update } from "../core/state.js";
+import { buttonOf, html, live, optionsOf, progressBar, render } from "../templates.js";
 import { shownRows, sortedRows } from "./take-rows.js";
 
-/** @import { ExportProgress, State, TakeRow, TakeTable } from "../core/types.d.ts" */
+/** @import { State, TakeRow, TakeTable } from "../core/types.d.ts" */
 
 /** @type {[string, keyof TakeRow][]} */
 const COLUMNS = [
@@ -25,9 +27,6 @@ const COLUMNS = [
   ["Faults", "faults"],
 ];
 
-/** @type {{ id: string, bar: HTMLProgressElement, words: HTMLElement } | null} */
-let running = null;
-
 /**
  * Show the button as soon as there are takes to recognise.
  *
@@ -36,15 +35,6 @@ let running = null;
 export function drawTakesButton({ clips, gestures }) {
   byId("all-takes").hidden =
     !gestures?.gestures.length || !clips.some(({ status }) => status === "done");
-}
-
-/** @param {ExportProgress | null} progress */
-function advance(progress) {
-  if (!running || progress?.id !== running.id) return;
-  const { stage, done, total, eta_s: left } = progress;
-  const rest = left === null ? "" : `, ${timeLeft(left)}`;
-  running.words.textContent = `Recognising ${stage}, ${percent(done / total)}${rest}`;
-  Object.assign(running.bar, { max: total, value: done });
 }
 
 /**
@@ -74,16 +64,11 @@ function cellsOf(row) {
   const name = row.take === null ? row.clip : `${row.clip}, take ${row.take}`;
   const answer = row.pair ? `${row.pair}?` : `rejected, nearest ${row.nearest}`;
   const own = demonstratedBy(state.gestures?.gestures ?? [], row);
-  const result = row.take === null ? "" : (row.label ?? answer) + (own ? " (demonstration)" : "");
   return [
-    h(
-      "button",
-      { type: "button", className: "link", title: "Show in the studio", onclick: () => jump(row) },
-      name,
-    ),
+    buttonOf(name, () => jump(row), { look: "link", title: "Show in the studio" }),
     row.start === null ? "" : moment(row.start),
     row.end === null ? "" : moment(row.end),
-    result,
+    row.take === null ? "" : (row.label ?? answer) + (own ? " (demonstration)" : ""),
     row.confidence === null ? "" : percent(row.confidence),
     row.runner_up ?? "",
     verdictOf(row),
@@ -92,166 +77,172 @@ function cellsOf(row) {
 }
 
 /**
+ * What the dialog shows: the choice of clips, then the progress of the table that is made, then the
+ * table in its order. `ticks` are the clips that are chosen otherwise than `every` one.
+ *
+ * @typedef {{ ticks: Map<string, boolean>, every: boolean, id: string, problem: string, table: TakeTable | null, filter: string, by: keyof TakeRow | null, down: boolean }} Shown
+ * @typedef {(change: Partial<Shown>) => void} Put
+ */
+
+/**
  * The table with its filter, its order and its export.
  *
  * @param {TakeTable} table
+ * @param {Shown} shown
+ * @param {Put} put
  */
-function resultOf({ rows, csv }) {
-  let by = /** @type {keyof TakeRow | null} */ (null);
-  let down = false;
+function result({ rows, csv }, { filter, by, down }, put) {
   const labels = [...new Set(rows.flatMap(({ label }) => label ?? []))].sort();
-  const filter = h(
-    "select",
-    { id: "take-filter" },
-    h("option", { value: "" }, "All takes"),
-    h("option", { value: "rejected" }, "Rejected"),
-    h("option", { value: "asked" }, "Asked back"),
-    h("option", { value: "faults" }, "With faults"),
-    labels.map((label) => h("option", { value: `=${label}` }, label)),
-  );
-  const count = h("span", { className: "dim", role: "status" });
-  const body = h("tbody");
-  const heads = COLUMNS.map(([title, name]) => {
-    const sort = () => {
-      down = by === name && !down;
-      by = name;
-      draw();
-    };
-    return h(
-      "th",
-      { scope: "col" },
-      h("button", { type: "button", className: "link", onclick: sort }, title),
-    );
-  });
-  const draw = () => {
-    const shown = sortedRows(shownRows(rows, filter.value), by, down);
-    count.textContent = `${shown.length} of ${plural(rows.length, "row")}`;
-    heads.forEach((head, at) => {
-      const order = COLUMNS[at][1] === by ? (down ? "descending" : "ascending") : "none";
-      head.setAttribute("aria-sort", order);
-    });
-    body.replaceChildren(
-      ...shown.map((row) =>
-        h(
-          "tr",
-          {},
-          cellsOf(row).map((cell) => h("td", {}, cell)),
-        ),
-      ),
-    );
-  };
-  filter.onchange = draw;
-  draw();
-  const file = () => ({ name: "takes.csv", content: new Blob([csv], { type: "text/csv" }) });
-  return [
-    h(
-      "div",
-      { className: "take-tools" },
-      h("label", { for: "take-filter" }, "Show"),
-      filter,
-      count,
-      h("span", { className: "spacer" }),
-      h(
-        "button",
-        {
-          type: "button",
-          title: "All rows, in the order of the clips",
-          onclick: () => saveFile(file()),
-        },
-        "Export as CSV",
-      ),
-    ),
-    h(
-      "div",
-      { className: "table-scroll", tabIndex: 0, role: "region", "aria-label": "Table of takes" },
-      h("table", {}, h("thead", {}, h("tr", {}, heads)), body),
-    ),
+  /** @type {[string, string][]} */
+  const filters = [
+    ["", "All takes"],
+    ["rejected", "Rejected"],
+    ["asked", "Asked back"],
+    ["faults", "With faults"],
+    ...labels.map((label) => /** @type {[string, string]} */ ([`=${label}`, label])),
   ];
+  const file = () => ({ name: "takes.csv", content: new Blob([csv], { type: "text/csv" }) });
+  const head = (/** @type {typeof COLUMNS[number]} */ [title, name]) => {
+    const order = name !== by ? "none" : down ? "descending" : "ascending";
+    const sort = () => put({ by: name, down: name === by && !down });
+    return html`<th scope="col" aria-sort=${order}>${buttonOf(title, sort, { look: "link" })}</th>`;
+  };
+  const kept = sortedRows(shownRows(rows, filter), by, down);
+  return html`<div class="take-tools">
+      <label for="take-filter">Show</label>
+      <select
+        id="take-filter"
+        @change=${(/** @type {any} */ { target }) => put({ filter: target.value })}
+      >
+        ${optionsOf(filters, filter)}
+      </select>
+      <span class="dim" role="status">${kept.length} of ${plural(rows.length, "row")}</span>
+      <span class="spacer"></span>
+      ${buttonOf("Export as CSV", () => saveFile(file()), {
+        title: "All rows, in the order of the clips",
+      })}
+    </div>
+    <div class="table-scroll" tabindex="0" role="region" aria-label="Table of takes">
+      ${takesTable(
+        "Takes",
+        COLUMNS.map(head),
+        kept.map((row) => takeRow(cellsOf(row))),
+      )}
+    </div>`;
 }
 
-/** The clips to choose from; all are chosen at first. */
-function clipChoice() {
-  /** @type {Map<string, HTMLInputElement>} */
-  const boxes = new Map();
-  const every = h("input", { type: "checkbox", checked: true });
-  every.onchange = () => {
-    for (const box of boxes.values()) box.checked = every.checked;
-  };
-  const words = h("b");
-  const rows = h("div", { className: "take-clip-rows" });
-  /** Offer the loaded clips; the choice among them stays. */
-  const offer = () => {
-    const ready = state.clips.filter(({ status }) => status === "done");
-    for (const { id } of ready)
-      if (!boxes.has(id))
-        boxes.set(id, h("input", { type: "checkbox", value: id, checked: every.checked }));
-    words.textContent = `All ${plural(ready.length, "clip")}`;
-    rows.replaceChildren(...ready.map(({ id, name }) => h("label", {}, boxes.get(id) ?? "", name)));
-  };
-  offer();
-  const element = h(
-    "fieldset",
-    { className: "take-clips" },
-    h("legend", {}, "Clips"),
-    h("label", {}, every, words),
-    rows,
-    olderClipsButton(offer),
-  );
-  const chosen = () => [...boxes.values()].filter((box) => box.checked).map(({ value }) => value);
-  return { element, chosen };
+const ready = () => state.clips.filter(({ status }) => status === "done");
+
+/**
+ * The clips to choose from; all are chosen at first.
+ *
+ * @param {Shown} shown
+ * @param {Put} put
+ * @param {HTMLElement} olderClips
+ */
+function clipChoice({ ticks, every }, put, olderClips) {
+  const box = (/** @type {boolean} */ checked, /** @type {(on: boolean) => void} */ set) =>
+    html`<input
+      type="checkbox"
+      .checked=${live(checked)}
+      @change=${(/** @type {any} */ { target }) => set(target.checked)}
+    />`;
+  const clips = ready();
+  return html`<fieldset class="take-clips">
+    <legend>Clips</legend>
+    <label
+      >${box(every, (on) => put({ every: on, ticks: new Map() }))}<b
+        >All ${plural(clips.length, "clip")}</b
+      ></label
+    >
+    <div class="take-clip-rows">
+      ${clips.map(
+        ({ id, name }) =>
+          html`<label>${box(ticks.get(id) ?? every, (on) => ticks.set(id, on))}${name}</label>`,
+      )}
+    </div>
+    ${olderClips}
+  </fieldset>`;
 }
+
+/** How far the table is that is made. */
+function progress(/** @type {string} */ id) {
+  const told = state.tabling?.id === id ? state.tabling : null;
+  const rest = told && told.eta_s !== null ? `, ${timeLeft(told.eta_s)}` : "";
+  const far = told ? ` ${told.stage}, ${percent(told.done / told.total)}${rest}` : "";
+  return html`<p role="status">Recognising${far}</p>
+    ${progressBar("Progress of the table", told?.done, told?.total)}`;
+}
+
+let redraw = () => {};
 
 /** Open the dialog that recognises all takes. */
 export function openTakeTable() {
   const language = state.gestures;
   if (!language) return;
   const leaving = new AbortController();
-  const { element, chosen } = clipChoice();
-  const content = h("div", { className: "take-content" }, element);
-  const start = h("button", { type: "submit", className: "primary" }, "Recognise all takes");
-  const close = h("button", { type: "button", onclick: closeDialog }, "Close");
-  const fail = (/** @type {string} */ text) =>
-    content.replaceChildren(element, h("p", { className: "field-problem", role: "alert" }, text));
-  const recognise = async () => {
-    const clips = chosen();
-    if (!clips.length) return fail("No clip is chosen; choose one whose takes are recognised.");
-    const bar = h("progress", { "aria-label": "Progress of the table" });
-    const words = h("p", { role: "status" }, "Recognising");
-    const id = api.uniqueId();
-    running = { id, bar, words };
-    content.replaceChildren(words, bar);
-    start.hidden = true;
-    close.textContent = "Cancel";
-    try {
-      const table = await api.languages.takeTable(
-        language.id,
-        { id, clip_ids: clips },
-        leaving.signal,
-      );
-      content.replaceChildren(...resultOf(table));
-    } catch (error) {
-      start.hidden = false;
-      fail(`The takes could not be recognised: ${error.message}`);
-    } finally {
-      // Another table may have begun since this one was cancelled.
-      if (running?.id === id) running = null;
-      close.textContent = "Close";
-    }
-    return undefined;
+  const form = h("form", { method: "dialog", className: "take-table", noValidate: true });
+  const olderClips = olderClipsButton(() => draw());
+  /** @type {Shown} */
+  const shown = {
+    ticks: new Map(),
+    every: true,
+    id: "",
+    problem: "",
+    table: null,
+    filter: "",
+    by: null,
+    down: false,
   };
-  const form = h(
-    "form",
-    { method: "dialog", className: "take-table", noValidate: true },
-    h("h2", { id: "dialog-title" }, `All takes, recognised by ${language.name}`),
-    content,
-    h("div", { className: "dialog-actions" }, close, start),
-  );
+  /** @type {Put} */
+  const put = (change) => {
+    Object.assign(shown, change);
+    draw();
+  };
+  const recognise = async () => {
+    const clips = ready().filter(({ id }) => shown.ticks.get(id) ?? shown.every);
+    if (!clips.length)
+      return put({ problem: "No clip is chosen; choose one whose takes are recognised." });
+    const id = api.uniqueId();
+    put({ id, problem: "" });
+    try {
+      const wanted = { id, clip_ids: clips.map((clip) => clip.id) };
+      put({ table: await api.languages.takeTable(language.id, wanted, leaving.signal) });
+    } catch (error) {
+      put({ problem: `The takes could not be recognised: ${error.message}` });
+    }
+    return put({ id: "" });
+  };
+  const draw = () => {
+    const { id, problem, table } = shown;
+    const choosing = !id && !table;
+    render(
+      html`<h2 id="dialog-title">All takes, recognised by ${language.name}</h2>
+        <div class="take-content">
+          ${
+            table
+              ? result(table, shown, put)
+              : id
+                ? progress(id)
+                : clipChoice(shown, put, olderClips)
+          }
+          <p class="field-problem" role="alert" ?hidden=${!problem}>${problem}</p>
+        </div>
+        <div class="dialog-actions">
+          ${buttonOf(id ? "Cancel" : "Close", closeDialog)}
+          <button type="submit" class="primary" ?hidden=${!choosing}>Recognise all takes</button>
+        </div>`,
+      form,
+    );
+  };
   form.onsubmit = (event) => {
     event.preventDefault();
-    if (!start.hidden) recognise();
+    if (!shown.id && !shown.table) recognise();
   };
+  redraw = draw;
+  draw();
   showDialog(form, () => leaving.abort());
-  start.focus();
+  /** @type {HTMLElement | null} */ (form.querySelector("[type=submit]"))?.focus();
 }
 
-follow(["tabling"], () => advance(state.tabling));
+follow(["tabling"], () => redraw());

@@ -1,6 +1,6 @@
 // The table that makes gestures of several clips: named in one place, saved in one undoable step.
 
-import { BUSY } from "../clips/busy.js";
+import { BUSY } from "../clips/batch.js";
 import { labelInName } from "../clips/clip-label.js";
 import { olderClipsButton } from "../clips/older-clips.js";
 import { heldName } from "../clips/salutes.js";

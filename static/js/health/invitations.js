@@ -1,5 +1,6 @@
 // Invitations: other people add their takes to the language by a link or its QR code.
 
+import { headsOf, takeRow, takesTable } from "../clips/takes.js";
 import * as api from "../core/api.js";
 import { copy } from "../core/clipboard.js";
 import { closeDialog, showDialog } from "../core/dialogs.js";
@@ -108,7 +109,7 @@ const figure = (src, words) =>
  * @param {ReceivedTake} take
  * @param {(take: ReceivedTake, status: "added" | "removed") => void} settle
  */
-function takeRow(invitation, take, settle) {
+function receivedRow(invitation, take, settle) {
   const { label, diver, status } = take;
   const held = isHeld(take);
   const button = (/** @type {"added" | "removed"} */ next, /** @type {string} */ words) =>
@@ -116,13 +117,17 @@ function takeRow(invitation, take, settle) {
       writes: true,
       label: `${words} ${label} by ${diver}`,
     });
-  return html`<li class="received ${held ? "held" : status}">
-    <span><b>${label}</b> by ${diver}</span><span class="dim">${outcome(take)}</span>${
-      held || status === "removed" ? button("added", "Add") : nothing
-    }${held || status === "added" ? button("removed", "Remove") : nothing}${
-      held ? html`<div class="received-take">${drawingOf(invitation, take)}</div>` : nothing
-    }
-  </li>`;
+  return takeRow(
+    [
+      html`<b>${label}</b> by ${diver}`,
+      html`<span class="dim">${outcome(take)}</span
+        >${held ? html`<div class="received-take">${drawingOf(invitation, take)}</div>` : nothing}`,
+      html`${held || status === "removed" ? button("added", "Add") : nothing}${
+        held || status === "added" ? button("removed", "Remove") : nothing
+      }`,
+    ],
+    held ? "held" : status,
+  );
 }
 
 /** @param {NewInvitation} made */
@@ -283,13 +288,19 @@ function row(language, { id, created, expires, closed, most_takes: most, takes, 
         ? button("Take back what came in", () => settle(language, id, "removed", ...kept))
         : nothing
     }
-    <ul aria-label="Takes">
-      ${repeat(
-        shown,
-        (take) => take.id,
-        (take) => takeRow(id, take, (each, status) => settle(language, id, status, each)),
-      )}
-    </ul>
+    ${
+      shown.length
+        ? takesTable(
+            "Takes",
+            headsOf(["Shows", "Became"]),
+            repeat(
+              shown,
+              (take) => take.id,
+              (take) => receivedRow(id, take, (each, status) => settle(language, id, status, each)),
+            ),
+          )
+        : nothing
+    }
   </li>`;
 }
 

@@ -1,7 +1,7 @@
 // Clips on their way into the test set: they wait for their poses, or for a label.
 
 import { labelInName } from "../clips/clip-label.js";
-import { BUSY } from "../clips/busy.js";
+import { BUSY } from "../clips/batch.js";
 import { clipsOfDemonstrations } from "../clips/demonstration-ranges.js";
 import * as api from "../core/api.js";
 import { tabStore } from "../core/browser-store.js";

@@ -1,10 +1,10 @@
 // The rows of the test with clips: uploads, clips that wait for a label, and tested takes.
 
 import { statusText } from "../clips/clip-store.js";
-import { askWhich } from "../core/format.js";
+import { answerOf, rankOf, takeLink, takeRow } from "../clips/takes.js";
+import { percent } from "../core/format.js";
 import { placeIn, state } from "../core/state.js";
 import { buttonOf, html, iconButtonOf, live, progressBar } from "../templates.js";
-import { address, go, here } from "../core/views.js";
 import { labelTake, NONE } from "../languages/test-set.js";
 import { leaveOut, leaveWaiting, means } from "./test-set-clips.js";
 
@@ -14,20 +14,7 @@ import { leaveOut, leaveWaiting, means } from "./test-set-clips.js";
 
 /** @typedef {ReturnType<typeof import("./test-set-clips.js").waitingClips>[number]} WaitingClip */
 
-export const REFUSED = "refused";
-export const ASKED = "asked back";
-
 export const labels = () => state.gestures?.labels ?? [];
-
-/** @param {Pick<TestedTake, "label" | "pair">} take */
-export const readAs = ({ label, pair }) => label ?? (pair ? ASKED : REFUSED);
-
-/**
- * The order of a take among others: the wrong ones come first, then those that were asked back.
- *
- * @param {Pick<TestedTake, "right" | "pair">} take
- */
-export const rankOf = ({ right, pair }) => (right ? 2 : pair ? 1 : 0);
 
 /**
  * @param {string} name
@@ -57,12 +44,10 @@ export const uploadsHere = () => state.uploads.filter(({ uploaded }) => uploaded
  * @param {{ shows: unknown, text: string | null | undefined, progress: unknown, close: unknown }} cells
  */
 const waiting = (name, { shows, text, progress, close }) =>
-  html`<tr class="waiting">
-    <td>${name}</td>
-    <td>${shows}</td>
-    <td colspan="2"><span class="stage-text">${text}</span>${progress}</td>
-    <td>${close}</td>
-  </tr>`;
+  takeRow(
+    [name, shows, html`<span class="stage-text">${text}</span>${progress}`, "", close],
+    "waiting",
+  );
 
 /** @param {WaitingClip} waiting */
 export function waitingRow({ clip, expected, busy }) {
@@ -141,44 +126,32 @@ function outcomeOf(take) {
       ${take.demonstration ? "the only demonstration" : "the language lacks it"}</span
     >`;
   if (!take.known) return html`<span class="dim">not recognised yet</span>`;
-  const { pair, change } = take;
-  const extra = notesOf(take).join(", ");
-  const [sign, word] = [
-    ["\u2260", "wrong: "],
-    ["?", "asked back: "],
-    ["\u2713", "right: "],
-  ][rankOf(take)];
-  return html`<span class="outcome-sign" aria-hidden="true">${sign}</span><span>${word}</span
-    ><b>${pair ? askWhich(pair) : readAs(take)}</b>${
-      extra && html`<small class="dim">, ${extra}</small>`
-    }${change && html`<span class="tag ${change}">${change}</span>`}`;
+  const { change } = take;
+  return html`${answerOf(take, notesOf(take).join(", "))}${
+    change && html`<span class="tag ${change}">${change}</span>`
+  }`;
 }
 
 /**
  * @param {TestedTake} take
  * @param {TestedTake[]} takes
  */
-export function takeRow(take, takes) {
+export function testedRow(take, takes) {
   const several = takes.filter((each) => each.clip_id === take.clip_id);
   const name = several.length > 1 ? `${take.clip}, take ${several.indexOf(take) + 1}` : take.clip;
-  const place = placeOf(take, takes);
-  const kind = take.known ? ["wrong", "asked", ""][rankOf(take)] : "demonstration";
-  return html`<tr class=${kind}>
-    <td>
-      <a
-        href=${address("studio", place)}
-        title="Show the clip and why"
-        @click=${here(() => go("studio", place))}
-        >${name}</a
-      >${take.added_by && html`<small class="dim"> by ${take.added_by}</small>`}
-    </td>
-    <td>${labelSelect(name, take.expected, (label) => labelTake(take.id, label))}</td>
-    <td>${outcomeOf(take)}</td>
-    <td class="num">${take.recognition_id ? `${Math.round(100 * take.confidence)} %` : ""}</td>
-    <td>
-      ${iconButtonOf("close", `Leave ${name} out of the test`, () => leaveOut(take, name), {
+  const look = take.known ? ["wrong", "asked", ""][rankOf(take)] : "demonstration";
+  return takeRow(
+    [
+      html`${takeLink(name, placeOf(take, takes))}${
+        take.added_by && html`<small class="dim"> by ${take.added_by}</small>`
+      }`,
+      labelSelect(name, take.expected, (label) => labelTake(take.id, label)),
+      outcomeOf(take),
+      take.recognition_id ? html`<span class="num">${percent(take.confidence)}</span>` : "",
+      iconButtonOf("close", `Leave ${name} out of the test`, () => leaveOut(take, name), {
         writes: true,
-      })}
-    </td>
-  </tr>`;
+      }),
+    ],
+    look,
+  );
 }

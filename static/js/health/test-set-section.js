@@ -2,24 +2,14 @@
 
 import { olderClipsButton } from "../clips/older-clips.js";
 import { saveFile } from "../clips/mcap-export.js";
+import { ASKED, headsOf, rankOf, readAs, REFUSED, takesTable } from "../clips/takes.js";
 import { plural } from "../core/format.js";
 import { currentLanguage, state, update } from "../core/state.js";
 import { buttonOf, guard, html, live, nothing, progressBar, repeat } from "../templates.js";
 import { go } from "../core/views.js";
 import { cancelTestRun, changeWords, NONE, runTestSet } from "../languages/test-set.js";
 import { csvOf, testedOf } from "./test-set-results.js";
-import {
-  ASKED,
-  labels,
-  placeOf,
-  rankOf,
-  readAs,
-  REFUSED,
-  takeRow,
-  uploadRow,
-  uploadsHere,
-  waitingRow,
-} from "./test-set-rows.js";
+import { labels, placeOf, testedRow, uploadRow, uploadsHere, waitingRow } from "./test-set-rows.js";
 import { addLibraryClips, addTestClips, candidates, waitingClips } from "./test-set-clips.js";
 import { confusionGrid } from "./confusion-grid.js";
 import { pairName, pairOf } from "./finding-links.js";
@@ -230,32 +220,17 @@ function list(takes) {
       )}
     </p>`;
   return html`${filter}
-    <div class="confusion-scroll">
-      <table class="takes">
-        <caption class="visually-hidden">
-          The test clips
-        </caption>
-        <thead>
-          <tr>
-            ${["Clip", "Shows", "Read as", "Confidence"].map(
-              (text) => html`<th scope="col">${text}</th>`,
-            )}
-            <td></td>
-          </tr>
-        </thead>
-        <tbody>
-          ${cell ? "" : repeat(uploadsHere(), ({ key }) => key, uploadRow)}
-          ${cell ? "" : repeat(waitingClips(), ({ clip }) => clip.id, waitingRow)}
-          ${onChange(() =>
-            repeat(
-              shown,
-              ({ id }) => id,
-              (take) => takeRow(take, takes),
-            ),
-          )}
-        </tbody>
-      </table>
-    </div>`;
+  ${takesTable("The test clips", headsOf(["Clip", "Shows", "Read as", "Confidence"]), [
+    cell ? "" : repeat(uploadsHere(), ({ key }) => key, uploadRow),
+    cell ? "" : repeat(waitingClips(), ({ clip }) => clip.id, waitingRow),
+    onChange(() =>
+      repeat(
+        shown,
+        ({ id }) => id,
+        (take) => testedRow(take, takes),
+      ),
+    ),
+  ])}`;
 }
 
 /** @param {TestSet | null} testSet */

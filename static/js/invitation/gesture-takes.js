@@ -77,7 +77,11 @@ export function showGestures(root, invited, memory) {
       wake = () => resolve(null);
     });
 
-  const camera = takeCamera({ ended: () => endHandsFree(), again: () => beginHandsFree() });
+  const camera = takeCamera({
+    draw: () => draw(),
+    ended: () => endHandsFree(),
+    again: () => beginHandsFree(),
+  });
 
   const standingAt = (/** @type {Standing} */ wanted) =>
     entries.find(({ standing }) => standing === wanted);
@@ -306,7 +310,9 @@ export function showGestures(root, invited, memory) {
           @dragover=${(/** @type {Event} */ event) => event.preventDefault()}
           @drop=${drop}
         >
-          ${done && !handsFree ? nothing : shown(current)}${camera.element}${lastTake()}
+          ${done && !handsFree ? nothing : shown(current)}${camera.picture({
+            hidden: Boolean(preview) || !camera.isThere(),
+          })}${lastTake()}
           <p class="step" role="status">${words}</p>
           <p class="dim" ?hidden=${!note}>${note}</p>
           <div class="actions">${actions}</div>
@@ -366,13 +372,11 @@ export function showGestures(root, invited, memory) {
    */
   function approve(file, signal) {
     preview = URL.createObjectURL(file);
-    camera.element.hidden = true;
     return new Promise((/** @type {(approved: boolean) => void} */ resolve) => {
       const finish = (/** @type {boolean} */ approved) => {
         clearTimeout(timer);
         URL.revokeObjectURL(preview);
         preview = "";
-        camera.element.hidden = false;
         resolve(approved);
       };
       const timer = setTimeout(() => finish(true), SHOW_MS);
@@ -435,12 +439,11 @@ export function showGestures(root, invited, memory) {
     handsFree = false;
     taking?.abort("drop");
     taking = null;
-    camera.stop();
+    camera.off();
     wake();
     advance();
   }
 
-  addEventListener("pagehide", camera.stop);
   for (const entry of entries) {
     const known = memory.kept.takes[entry.gesture.label];
     if (known) follow(entry, known);

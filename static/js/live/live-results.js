@@ -1,16 +1,19 @@
 // The recognitions of the live view: the newest one large, the others in a list.
 
-import { byId } from "../core/dom.js";
-import { askWhich, moment, percent } from "../core/format.js";
 import { endName } from "../clips/salutes.js";
+import { askWhich, moment, percent } from "../core/format.js";
 import { placeIn, state } from "../core/state.js";
 import { go } from "../core/views.js";
-import { buttonOf, elementOf, html, nothing, render } from "../templates.js";
+import { buttonOf, html, nothing, repeat } from "../templates.js";
 
 /** @import { Clip } from "../core/types.d.ts" */
 /** @import { Recognized } from "../camera/live-messages.d.ts" */
 
-const MOST = 50; // in the list; a practice session has fewer.
+/**
+ * A recognition, of a clip or of the camera, at a time of day.
+ *
+ * @typedef {{ result: Recognized, clip: Clip | null, clock: string }} Result
+ */
 
 /** @param {Recognized} result */
 function verdict(result) {
@@ -35,11 +38,9 @@ const lookOf = ({ label, pair }) => (pair ? "asked" : label === null ? "unsure" 
 /**
  * The list entry of a recognition; for a clip, a link to the take and its explanation.
  *
- * @param {Recognized} result
- * @param {Clip | null} clip
- * @param {string} clock
+ * @param {Result} shown
  */
-function entry(result, clip, clock) {
+function entry({ result, clip, clock }) {
   const { title, text } = verdict(result);
   const place = placeIn(clip?.id, { start: result.start, end: result.end });
   const open = buttonOf("Open", () => go("studio", place), {
@@ -59,61 +60,32 @@ function entry(result, clip, clock) {
 }
 
 /**
- * Show a recognition, of a clip or of the camera.
+ * The newest recognition, or `told` where there is something else to say.
  *
- * @param {Recognized} result
- * @param {Clip | null} clip
+ * @param {Result[]} results
+ * @param {string} told
  */
-export function addResult(result, clip) {
-  const { title, text } = verdict(result);
-  const box = byId("live-result");
-  box.className = `live-result ${lookOf(result)}`;
+export function newestOf([newest], told) {
+  const result = told ? null : newest?.result;
+  const { title, text } = result ? verdict(result) : { title: "", text: told };
   const meter = html`<meter
     min="0"
     max="1"
-    value=${result.confidence ?? 0}
+    value=${result?.confidence ?? 0}
     aria-label="Confidence"
   ></meter>`;
-  render(
-    html`<strong>${title}</strong>${result.label === null ? nothing : meter}
-      <p>${text}</p>`,
-    box,
-  );
-  const list = byId("live-recognised");
-  list.prepend(elementOf(entry(result, clip, new Date().toLocaleTimeString())));
-  while (list.children.length > MOST) list.lastChild?.remove();
-  byId("live-clear").hidden = false;
+  return html`<div class="live-result ${result ? lookOf(result) : ""}" aria-live="polite">
+    ${title ? html`<strong>${title}</strong>` : nothing}${result?.label ? meter : nothing}
+    <p>${text}</p>
+  </div>`;
 }
 
 /**
- * Show that nothing was recognised in a clip; `rate` is the frames processed per second.
+ * The recognitions, the newest first.
  *
- * @param {Clip} clip
- * @param {number | null} rate
+ * @param {Result[]} results
  */
-export function showNothingRecognised(clip, rate) {
-  const looked =
-    rate === null
-      ? "No frame of it could be looked at in time"
-      : `${rate.toFixed(1)} frames a second of it were looked at`;
-  render(
-    html`<p>
-      Nothing was recognised in ${clip.name}. ${looked}; tick “Every frame” and play it again to
-      miss none.
-    </p>`,
-    byId("live-result"),
-  );
-}
-
-/**
- * Forget what was recognised.
- *
- * @param {string} text
- */
-export function clearResults(text) {
-  byId("live-recognised").replaceChildren();
-  byId("live-clear").hidden = true;
-  const box = byId("live-result");
-  box.className = "live-result nothing";
-  render(html`<p>${text}</p>`, box);
-}
+export const listOf = (results) =>
+  html`<ol class="live-recognised" aria-label="Recognised, newest first">
+    ${repeat(results, (each) => each, entry)}
+  </ol>`;

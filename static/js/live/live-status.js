@@ -1,49 +1,47 @@
 // The status of the live view in words: the salute, the take, the frame rate.
 
 import { howTo, isSlow, situation } from "../camera/take-steps.js";
-import { byId, h } from "../core/dom.js";
-import { endName } from "../clips/salutes.js";
-import { state as page } from "../core/state.js";
+import { SALUTE } from "../clips/salute-threshold.js";
+import { html, ifDefined } from "../templates.js";
 
 /** @import { Seen } from "../camera/live-messages.d.ts" */
 
-const kindOf = () => page.gestures?.trigger?.kind ?? "salute";
-
 /**
- * Show what begins and ends a take with the language's trigger; without a held trigger, no steps.
- */
-export function nameTrigger() {
-  const kind = kindOf();
-  const held = kind === "salute" ? "Salute" : "Pose";
-  for (const id of ["live-step-salute", "live-step-closing", "live-held"])
-    byId(id).textContent = held;
-  byId("live-autostop-text").textContent = `Stop after the closing ${endName(page.gestures)}`;
-  byId("live-steps").hidden = byId("live-meter").hidden = kind === "gesture" || kind === "none";
-}
-
-/**
- * Show the diver's step between the salutes; null while no source is watched.
+ * The diver's step between what begins and ends a take; without a held trigger, no steps. Null
+ * while no source is watched.
  *
  * @param {Seen | null} answer
+ * @param {string} kind of the trigger
  */
-export function drawState(answer) {
-  const [step, text] = answer ? situation(answer, kindOf()) : ["", howTo(kindOf())];
-  const words = byId("live-instruction");
-  if (words.textContent !== text) words.textContent = text;
-  for (const each of byId("live-steps").children) {
-    if (each.id === `live-step-${step}`) each.setAttribute("aria-current", "step");
-    else each.removeAttribute("aria-current");
-  }
-  byId("live-salute").value = answer?.salute ?? 0;
+export function stepsOf(answer, kind) {
+  const [step, text] = answer ? situation(answer, kind) : ["", howTo(kind)];
+  const held = kind === "salute" ? "Salute" : "Pose";
+  const unheld = kind === "gesture" || kind === "none";
+  const item = (/** @type {string} */ name, /** @type {string} */ words) =>
+    html`<li id="live-step-${name}" aria-current=${ifDefined(name === step ? "step" : undefined)}>
+      ${words}
+    </li>`;
+  return html`<div class="live-state">
+    <ol class="live-steps" id="live-steps" ?hidden=${unheld}>
+      ${item("salute", held)}${item("gesture", "Gesture")}${item("closing", held)}
+    </ol>
+    <p id="live-instruction" role="status">${text}</p>
+    <label class="live-salute" id="live-meter" ?hidden=${unheld}
+      ><span>${held}</span
+      ><meter min="0" max="1" low=${SALUTE} .value=${answer?.salute ?? 0}></meter
+    ></label>
+  </div>`;
 }
 
 /**
- * Show frames per second, and the seconds from the camera to the answer.
+ * Frames per second, and the seconds from the camera to the answer.
  *
  * @param {Seen | null} answer
  * @param {number} seconds
+ * @param {boolean} unhurried whether every frame is looked at, however long it takes
  */
-export function drawSpeed(answer, seconds) {
+export function speedOf(answer, seconds, unhurried) {
+  /** @type {[string, string][]} */
   const rows =
     answer === null
       ? []
@@ -52,9 +50,17 @@ export function drawSpeed(answer, seconds) {
           ["Latency", `${Math.round(1000 * seconds)} ms`],
           ["of which the models", `${Math.round(1000 * answer.seconds)} ms`],
         ];
-  const unhurried = page.source === "clip" && byId("live-every").checked;
-  byId("live-slow").hidden = !answer || unhurried || !isSlow(answer);
-  byId("live-speed").replaceChildren(
-    ...rows.map(([name, value]) => h("div", {}, h("dt", {}, name), h("dd", {}, value))),
-  );
+  return html`<p class="live-slow" ?hidden=${!answer || unhurried || !isSlow(answer)}>
+      Too few frames per second to recognise gestures. Close other programs, or record a clip: all
+      of its frames are used.
+    </p>
+    <dl class="live-speed">
+      ${rows.map(
+        ([name, value]) =>
+          html`<div>
+            <dt>${name}</dt>
+            <dd>${value}</dd>
+          </div>`,
+      )}
+    </dl>`;
 }

@@ -1,31 +1,29 @@
 // The live view: a camera, or a clip played as if live, and what is recognised in it.
 
-import { drawTrouble, startCamera } from "../camera/camera.js";
-import { mirror } from "../camera/mirror.js";
-import { drawSeen, overlay } from "../camera/pose-overlay.js";
-import { countDown, record } from "../camera/recording.js";
-import { takeEnd } from "../camera/take-end.js";
-import { cameraPossible, offerCameras, release, showClip } from "../camera/video-source.js";
-import { watch } from "../camera/watching.js";
+import { makeCamera } from "../camera/camera.js";
 import { select } from "../clips/clip-store.js";
+import { olderClipsButton } from "../clips/older-clips.js";
+import { endName, saluteHand } from "../clips/salutes.js";
 import * as api from "../core/api.js";
-import { byId, h } from "../core/dom.js";
 import { bind } from "../core/key-bindings.js";
+import { mayWrite } from "../core/session.js";
 import { follow, state, update } from "../core/state.js";
 import { toast } from "../core/toasts.js";
 import { go } from "../core/views.js";
-import { render } from "../templates.js";
+import { buttonOf, guard, html, optionsOf, render } from "../templates.js";
 import { addFiles } from "../upload/upload-list.js";
-import { panel } from "./live-layout.js";
-import { addResult, clearResults, showNothingRecognised } from "./live-results.js";
-import { drawSpeed, drawState, nameTrigger } from "./live-status.js";
+import { listOf, newestOf } from "./live-results.js";
+import { speedOf, stepsOf } from "./live-status.js";
 
+/** @import { Listening, Seen } from "../camera/live-messages.d.ts" */
+/** @import { Recording } from "../camera/recording.js" */
 /** @import { Clip } from "../core/types.d.ts" */
-/** @import { Listening, Recognized, Seen, Trouble } from "../camera/live-messages.d.ts" */
+/** @import { Result } from "./live-results.js" */
 
 const COUNT = 3; // s: from the button to where the diver stands.
-const INSTEAD = "play a clip as if live";
 const FIRST = "Nothing recognised yet. What is recognised appears here.";
+const LONGEST = 5 * 60 * 1000; // ms of one recording: a dozen gestures; memory is finite.
+const MOST = 50; // recognitions in the list; a practice session has fewer.
 
 const BETWEEN = {
   salute: "Between two salutes",
@@ -34,92 +32,45 @@ const BETWEEN = {
   none: "Anywhere",
 };
 
-const LONGEST = 5 * 60 * 1000; // ms of one recording: a dozen gestures; memory is finite.
+/** What is drawn, with the camera and the state of the page; `told` stands in place of a result. */
+const now = {
+  seen: /** @type {Seen | null} */ (null),
+  seconds: 0, // from the capture of what was seen
+  rate: /** @type {number | null} */ (null), // frames recently processed per second
+  recognised: 0, // takes since the source was started
+  results: /** @type {Result[]} */ ([]),
+  told: FIRST,
+  language: "",
+  counting: /** @type {AbortController | null} */ (null),
+  recording: /** @type {Recording | null} */ (null),
+  every: false,
+  autostop: true,
+};
 
-/** @type {ReturnType<typeof watch> | null} */
-let link = null;
-/** @type {SVGSVGElement | null} */
-let drawing = null;
-/** @type {ReturnType<typeof record> | null} */
-let recording = null;
-/** @type {AbortController | null} */
-let counting = null;
-let recognised = 0; // takes that were recognised since the source was started
-/** @type {number | null} */
-let rate = null; // frames recently processed per second
+/** @type {HTMLElement | null} */
+let root = null;
 
-const video = () => byId("live-video");
+const camera = makeCamera({ instead: "play a clip as if live", draw, start, stop });
+const hand = saluteHand();
+const olderClips = olderClipsButton();
+
+const kind = () => state.gestures?.trigger?.kind ?? "salute";
 const fromClip = () => state.source === "clip";
 // The models find nobody in a drawn skeleton.
 const pictured = () => state.clips.filter((clip) => clip.shows_pictures);
 const chosenClip = () => pictured().find((clip) => clip.id === state.clip) ?? pictured()[0] ?? null;
 
-/** @param {Trouble | null} trouble */
-const problem = (trouble) => drawTrouble(byId("live-problem"), trouble, start);
-
-/** Update the buttons to the current state. */
-function drawControls() {
-  const watching = link !== null;
-  const begin = byId("live-start");
-  begin.replaceChildren(watching ? "Stop" : fromClip() ? "Play as if live" : "Start the camera");
-  begin.className = watching ? "" : "primary";
-  begin.disabled = !watching && fromClip() && !chosenClip();
-  const take = byId("live-record");
-  take.hidden = fromClip();
-  take.replaceChildren(
-    h("i", { className: "dot", "aria-hidden": "true" }),
-    recording ? "Stop recording" : counting ? "Cancel" : "Record a clip",
-  );
-  take.classList.toggle("recording", recording !== null);
-  byId("live-clips").hidden = byId("live-every").parentElement.hidden = !fromClip();
-  byId("live-autostop").parentElement.hidden = fromClip();
-  byId("live-idle").hidden = watching;
-  for (const name of ["camera", "clip"])
-    byId(`live-from-${name}`).setAttribute(
-      "aria-pressed",
-      String((name === "clip") === fromClip()),
-    );
-}
-
-function drawClipChoice() {
-  const choice = byId("live-clips");
-  const chosen = chosenClip();
-  choice.replaceChildren(
-    ...pictured().map((clip) =>
-      h("option", { value: clip.id, selected: clip === chosen }, clip.name),
-    ),
-  );
-  drawControls();
-}
-
-async function drawCameraChoice() {
-  const choice = byId("live-cameras");
-  await offerCameras(choice, video());
-  choice.hidden ||= fromClip();
+/** @param {Partial<typeof now>} change */
+function put(change) {
+  Object.assign(now, change);
+  draw();
 }
 
 function stop() {
-  link?.stop();
-  counting?.abort();
+  now.counting?.abort();
   endRecording();
-  release(video());
-  link = null;
-  drawing?.remove();
-  drawState(null);
-  drawSpeed(null, 0);
-  drawControls();
-}
-
-/**
- * @param {Seen} answer
- * @param {number} seconds
- */
-function seen(answer, seconds) {
-  if (drawing) drawSeen(drawing, answer);
-  drawState(answer);
-  drawSpeed(answer, seconds);
-  rate = answer.frames_per_second;
-  end.seen(answer);
+  now.seen = null;
+  camera.off();
 }
 
 /**
@@ -129,13 +80,20 @@ function seen(answer, seconds) {
  */
 function clipEnded(clip) {
   stop();
-  if (!recognised) showNothingRecognised(clip, rate);
+  if (now.recognised) return;
+  const looked =
+    now.rate === null
+      ? "No frame of it could be looked at in time"
+      : `${now.rate.toFixed(1)} frames a second of it were looked at`;
+  put({
+    told: `Nothing was recognised in ${clip.name}. ${looked}; tick \u201cEvery frame\u201d and play it again to miss none.`,
+  });
 }
 
-/** @param {string} reason */
-function ended(reason) {
+/** @param {string} text */
+function ended(text) {
   stop();
-  problem({ title: "The live view ended", text: reason });
+  camera.put({ trouble: { title: "The live view ended", text } });
 }
 
 /** @param {Listening} message */
@@ -143,120 +101,67 @@ function listening({ language, gestures, problem: trouble }) {
   const text = trouble
     ? `Takes are found, but none is recognised: ${trouble}.`
     : language
-      ? `${BETWEEN[state.gestures?.trigger?.kind ?? "salute"]}: any of ${gestures === 1 ? "one gesture" : `${gestures} gestures`} of \u201c${language}\u201d.`
+      ? `${BETWEEN[kind()]}: any of ${gestures === 1 ? "one gesture" : `${gestures} gestures`} of \u201c${language}\u201d.`
       : "Takes are found, but no language is chosen to recognise them.";
-  byId("live-language").textContent = text;
-}
-
-/**
- * Show a clip, or the chosen camera.
- *
- * @param {Clip | null} clip
- * @returns {Promise<boolean>} whether there is a picture now
- */
-async function showSource(clip) {
-  const [picture, box] = [byId("live-picture"), byId("live-problem")];
-  const options = {
-    instead: INSTEAD,
-    again: start,
-    lost: stop,
-    device: byId("live-cameras").value,
-  };
-  if (!clip) return startCamera({ video: video(), picture, box }, options);
-  try {
-    await showClip(video(), api.clips.video(clip));
-  } catch (error) {
-    release(video());
-    problem({ title: "The clip cannot be played", text: error.message });
-    return false;
-  }
-  mirror(picture, video());
-  return true;
+  put({ language: text });
 }
 
 /** Show the camera or the clip, and begin to look at its frames. */
 async function start() {
   stop();
-  [recognised, rate] = [0, null];
-  problem(null);
+  Object.assign(now, { recognised: 0, rate: null });
   const clip = fromClip() ? chosenClip() : null;
-  const button = byId("live-start");
-  button.disabled = true;
-  const isShown = await showSource(clip);
-  button.disabled = false;
-  if (!isShown) {
-    if (cameraPossible()) drawCameraChoice(); // The chosen camera may be gone.
-    return false;
-  }
+  if (!(await camera.show(clip && api.clips.video(clip)))) return false;
   // The user may take long to allow the camera.
   if (state.view !== "live") {
     stop();
     return false;
   }
-  drawing = overlay(video());
-  const opened = watch(video(), {
-    seen,
+  camera.overlay();
+  const opened = camera.watch({
+    kind,
     listening,
     ended,
-    recognized: (/** @type {Recognized} */ result) => {
-      recognised += 1;
-      end.recognized(result, state.gestures?.trigger?.kind ?? "salute");
-      addResult(result, clip);
+    taken: () => now.autostop && endRecording(),
+    seen: (seen, seconds) => put({ seen, seconds, rate: seen.frames_per_second }),
+    recognized: (result) => {
+      const newest = { result, clip, clock: new Date().toLocaleTimeString() };
+      const results = [newest, ...now.results].slice(0, MOST);
+      put({ results, told: "", recognised: now.recognised + 1 });
     },
   });
-  link = opened;
-  link.listen(state.language);
-  drawControls();
-  if (!clip) drawCameraChoice();
+  camera.listen(state.language);
   await opened.opened;
-  if (link !== opened) return false;
-  const every = clip && byId("live-every").checked;
-  video().onended = () => {
-    if (clip) clipEnded(clip);
-  };
-  if (clip) video().onerror = () => ended("The clip broke off: the server did not answer.");
-  opened.begin(Boolean(every));
-  if (clip && !every) await video().play();
+  if (!opened.goesOn()) return false;
+  const { video } = camera;
+  const every = clip !== null && now.every;
+  if (clip) {
+    video.onended = () => clipEnded(clip);
+    video.onerror = () => ended("The clip broke off: the server did not answer.");
+  }
+  opened.begin(every);
+  if (clip && !every) await video.play();
   return true;
 }
 
-/** @param {number | null} left */
-function showCount(left) {
-  const box = byId("live-count");
-  box.hidden = left === null;
-  box.textContent = left === null ? "" : String(left);
-}
-
 async function beginRecording() {
-  if (!link && !(await start())) return;
-  counting = new AbortController();
-  drawControls();
-  const whole = await countDown(COUNT, showCount, counting.signal);
-  counting = null;
-  if (whole && video().srcObject) {
-    recording = record(video().srcObject);
-    setTimeout(
-      (/** @type {typeof recording} */ it) => {
-        if (recording === it) endRecording();
-      },
-      LONGEST,
-      recording,
-    );
-  }
-  byId("live-picture").classList.toggle("recording", recording !== null);
-  drawControls();
+  if (!camera.shown.on && !(await start())) return;
+  const counting = new AbortController();
+  put({ counting });
+  const whole = await camera.countDown(COUNT, counting.signal);
+  const recording = whole ? camera.record() : null;
+  Object.assign(now, { counting: null, recording });
+  camera.put({ recording: recording !== null });
+  if (recording) setTimeout(() => now.recording === recording && endRecording(), LONGEST);
 }
-
-const end = takeEnd(() => byId("live-autostop").checked && endRecording());
 
 async function endRecording() {
-  end.reset();
-  const ended = recording;
-  if (!ended) return;
-  recording = null;
-  byId("live-picture").classList.remove("recording");
-  drawControls();
-  const file = await ended.stop();
+  camera.reset();
+  const { recording } = now;
+  if (!recording) return;
+  now.recording = null;
+  camera.put({ recording: false });
+  const file = await recording.stop();
   if (!file) return;
   addFiles([file]);
   toast("Clip recorded", `${file.name} is read for poses now.`, {
@@ -264,9 +169,9 @@ async function endRecording() {
   });
 }
 
-const toggle = () => (link ? stop() : start());
+const toggle = () => (camera.shown.on ? stop() : start());
 const toggleRecording = () =>
-  recording ? endRecording() : counting ? counting.abort() : beginRecording();
+  now.recording ? endRecording() : now.counting ? now.counting.abort() : beginRecording();
 
 /**
  * Choose between camera and clip.
@@ -275,21 +180,109 @@ const toggleRecording = () =>
  */
 function chooseSource(source) {
   stop();
-  problem(null);
+  camera.put({ trouble: null });
   update({ source });
 }
 
-function wire() {
-  byId("live-start").onclick = toggle;
-  byId("live-record").onclick = toggleRecording;
-  byId("live-from-camera").onclick = () => chooseSource(null);
-  byId("live-from-clip").onclick = () => chooseSource("clip");
-  byId("live-cameras").onchange = start;
-  byId("live-clips").onchange = () => {
+/**
+ * @param {"every" | "autostop"} name
+ * @param {string} text
+ * @param {string} title
+ */
+const check = (name, text, title) =>
+  html`<label class="check" title=${title}
+    ><input
+      type="checkbox"
+      .checked=${now[name]}
+      @change=${(/** @type {any} */ { target }) => put({ [name]: target.checked })}
+    /><span>${text}</span></label
+  >`;
+
+/** The choice among the clips, drawn only when they change: frames come many times a second. */
+function clipChoice() {
+  const choose = (/** @type {any} */ { target }) => {
     stop();
-    select(byId("live-clips").value);
+    select(target.value);
   };
-  byId("live-clear").onclick = () => clearResults(FIRST);
+  const clips = pictured();
+  const chosen = chosenClip()?.id ?? "";
+  return html`<select aria-label="Clip" @change=${choose}>
+      ${guard([state.clips, chosen], () =>
+        optionsOf(
+          clips.map(({ id, name }) => [id, name]),
+          chosen,
+        ),
+      )}</select
+    >${check(
+      "every",
+      "Every frame",
+      "Processes every frame, also when this machine is slower than the clip",
+    )}`;
+}
+
+/** The choice among the cameras, and what is recorded from them. */
+const cameraChoice = () =>
+  html`${camera.choice()}${check(
+    "autostop",
+    `Stop after the closing ${endName(state.gestures)}`,
+    "Ends a recording when a take ends, without a click",
+  )}`;
+
+function controls() {
+  const { on, busy } = camera.shown;
+  const source = (/** @type {"clip" | null} */ name, /** @type {string} */ text) =>
+    html`<button
+      type="button"
+      aria-pressed=${(name === "clip") === fromClip()}
+      @click=${() => chooseSource(name)}
+    >
+      ${text}
+    </button>`;
+  const words = now.recording ? "Stop recording" : now.counting ? "Cancel" : "Record a clip";
+  return html`<div class="live-controls">
+    <div class="segments" role="group" aria-label="Source">
+      ${source(null, "Camera")}${source("clip", "Clip")}
+    </div>
+    ${fromClip() ? clipChoice() : cameraChoice()}${olderClips}
+    <span class="spacer"></span>
+    <button
+      type="button"
+      class="live-record ${now.recording ? "recording" : ""}"
+      data-writes
+      title="Record a clip, after a countdown (R)"
+      ?hidden=${fromClip()}
+      @click=${toggleRecording}
+    >
+      <i class="dot" aria-hidden="true"></i>${words}
+    </button>
+    ${buttonOf(on ? "Stop" : fromClip() ? "Play as if live" : "Start the camera", toggle, {
+      look: on ? "" : "primary",
+      title: "Start or stop watching (Space)",
+      disabled: busy || (!on && fromClip() && !chosenClip()),
+    })}
+  </div>`;
+}
+
+function draw() {
+  if (!root) return;
+  const { seen, seconds, results, told, language, every } = now;
+  const idle = html`${hand}No source is running`;
+  render(
+    html`<section class="live-stage" aria-label="Live picture">
+        <h1>Live recognition</h1>
+        ${camera.picture({ idle })}${stepsOf(seen, kind())}${controls()}
+      </section>
+      <aside class="live-side" aria-label="Recognised live">
+        ${newestOf(results, told)}
+        <p class="dim">${language}</p>
+        <div class="live-head" ?hidden=${!results.length}>
+          <h2>Recognised</h2>
+          ${buttonOf("Clear", () => put({ results: [], told: FIRST }), { look: "link" })}
+        </div>
+        ${listOf(results)}${speedOf(seen, seconds, fromClip() && every)}
+      </aside>`,
+    root,
+  );
 }
 
 const when = () => state.view === "live";
@@ -298,9 +291,7 @@ bind({
   keys: ["R"],
   text: "Record a clip from the camera, or stop",
   group: "Live",
-  run: () => {
-    if (!fromClip() && !byId("live-record").disabled) toggleRecording();
-  },
+  run: () => !fromClip() && mayWrite() && toggleRecording(),
   when,
 });
 
@@ -310,20 +301,10 @@ bind({
  * @param {HTMLElement} section
  */
 export function open(section) {
-  render(panel(), section);
-  clearResults(FIRST);
-  wire();
-  follow(["clips", "clip", "source"], drawClipChoice);
-  follow(["language"], ({ language }) => link?.listen(language));
-  follow(["gestures"], () => {
-    nameTrigger();
-    if (!link) drawState(null);
-  });
+  root = section;
+  follow(["clips", "clip", "source", "gestures"], draw);
+  follow(["language"], ({ language }) => camera.listen(language));
   follow(["view"], ({ view }) => {
     if (view !== "live") stop();
   });
-  addEventListener("pagehide", stop);
-  navigator.mediaDevices?.addEventListener("devicechange", drawCameraChoice);
-  drawState(null);
-  drawSpeed(null, 0);
 }

@@ -8,17 +8,16 @@ import { olderClipsButton } from "../clips/older-clips.js";
 import { takesLanguage } from "../clips/salutes.js";
 import * as api from "../core/api.js";
 import { tabStore } from "../core/browser-store.js";
-import { h, WRITES } from "../core/dom.js";
+import { askWhich } from "../core/format.js";
 import { follow, state } from "../core/state.js";
-import { limit } from "../core/text-limit.js";
+import { MAX_DIVER_LENGTH } from "../core/text-limit.js";
 import { attempt, complain } from "../core/toasts.js";
-import { buttonOf, elementOf, html, nothing, render } from "../templates.js";
+import { asOptions, guard, html, limited, live, nothing, optionsOf, render } from "../templates.js";
 import { addFiles, takeFilesIn } from "../upload/upload-list.js";
 import { practiceCamera } from "./practice-camera.js";
-import { feedback } from "./practice-feedback.js";
 import { recordCard } from "./record-card.js";
 
-/** @import { PracticeRecord, PracticeTake } from "../core/types.d.ts" */
+/** @import { PracticeAnswer, PracticeRecord, PracticeTake } from "../core/types.d.ts" */
 
 /**
  * A diver's attempt at a gesture of a language.
@@ -27,7 +26,6 @@ import { recordCard } from "./record-card.js";
  */
 
 const KEY = "osg-studio.diver"; // One diver practises in a tab.
-const LONGEST_NAME = 80;
 
 /** The clips that can be chosen: their poses are found, and they are not demonstrations. */
 function shownClips() {
@@ -47,61 +45,60 @@ async function lastTake(clip) {
 }
 
 /**
+ * The feedback: whether the take was right, and what to change.
+ *
+ * @param {PracticeAnswer} answer
+ */
+function feedback({ take, sentence, notes }) {
+  const look = take.right ? "right" : take.pair ? "asked" : "wrong";
+  const heads = {
+    right: "\u2713 Right: ",
+    asked: take.pair ? `? ${askWhich(take.pair)} ` : "",
+    wrong: "\u2260 Not yet: ",
+  };
+  return html`<p class="practice-${look}">
+      <b>${heads[look]}</b>${take.right ? take.expected : sentence}
+    </p>
+    ${notes.map((text) => html`<p class="dim">${text}</p>`)}`;
+}
+
+/**
  * Build the view.
  *
  * @param {HTMLElement} section
  */
 export function open(section) {
-  const diver = limit(
-    h("input", {
-      type: "text",
-      id: "practice-diver",
-      autocomplete: "off",
-      value: tabStore.get(KEY) ?? "",
-      oninput: () => {
-        tabStore.set(KEY, diver.value);
-        draw();
-      },
-    }),
-    LONGEST_NAME,
-  );
-  const gesture = h("select", { id: "practice-gesture" });
-  const clip = h("select", { id: "practice-clip" });
-  const picture = h("img", { className: "practice-picture", alt: "", width: 160, height: 160 });
-  const show = h(
-    "button",
-    { type: "submit", className: "primary", ...WRITES },
-    "Show it by this clip",
-  );
-  /** @type {"camera" | "clip" | null} as chosen; null: the camera where there is no clip */
-  let source = null;
-  const by = () => source ?? (clip.options.length ? "clip" : "camera");
-  /**
-   * @param {"camera" | "clip"} name
-   * @param {string} text
-   */
-  const sourceButton = (name, text) =>
-    elementOf(
-      buttonOf(text, () => {
-        source = name;
-        if (name === "clip") camera.stop();
-        draw();
-      }),
-    );
-  const [byCamera, byClip] = [sourceButton("camera", "Camera"), sourceButton("clip", "Clip")];
+  /** What is drawn, with the camera and the state of the page. */
+  const now = {
+    diver: tabStore.get(KEY) ?? "",
+    expected: "",
+    clip: "",
+    source: /** @type {"camera" | "clip" | null} */ (null), // null: the camera without a clip
+    answer: /** @type {unknown} */ (nothing),
+    busy: false,
+    records: /** @type {PracticeRecord[] | null} */ (null),
+  };
   /** @type {Map<string, Attempt>} */
   const awaited = new Map(); // attempts by their clip, until its poses are found
+  const olderClips = olderClipsButton();
+
+  /** @param {Partial<typeof now>} change */
+  function put(change) {
+    Object.assign(now, change);
+    draw();
+  }
+
+  const by = () => now.source ?? (now.clip ? "clip" : "camera");
   /** @returns {Attempt} */
   const attempted = () => ({
     language: state.language ?? "",
-    diver: diver.value.trim(),
-    expected: gesture.value,
+    diver: now.diver.trim(),
+    expected: now.expected,
   });
   const camera = practiceCamera({
-    started() {
-      source = "camera";
-    },
-    nameOf: () => `${diver.value.trim()} ${gesture.value}`.replace(/[/\\:]/g, " "),
+    draw: () => draw(),
+    started: () => put({ source: "camera" }),
+    nameOf: () => `${now.diver.trim()} ${now.expected}`.replace(/[/\\:]/g, " "),
     taken(file) {
       const shown = attempted();
       if (!shown.diver) {
@@ -115,88 +112,24 @@ export function open(section) {
       });
     },
   });
-  const answer = h("div", { className: "practice-answer", role: "status" });
-  const records = h("div", { className: "record-card" });
-  const note = h("p", { className: "dim" });
-  let offered = "";
-
-  /** @param {PracticeRecord[] | null} all */
-  const drawRecords = (all) => {
-    const none = html`<p class="dim">Nobody has practised yet.</p>`;
-    render(all?.length ? all.map((each) => recordCard(each, remove)) : none, records);
-  };
 
   async function load() {
     const { language } = state;
     if (!language || state.view !== "practice") return;
-    const all = await attempt("Loading the records", () => api.practice.records(language));
-    if (all && language === state.language) drawRecords(all);
+    const records = await attempt("Loading the records", () => api.practice.records(language));
+    if (records && language === state.language) put({ records });
   }
 
   /** @param {PracticeTake} take */
-  async function remove(take) {
-    drawRecords(
-      await attempt("Removing the take", () => api.practice.remove(state.language ?? "", take.id)),
-    );
-  }
-
-  function drawPicture() {
-    const chosen = state.gestures?.gestures.find(({ label }) => label === gesture.value);
-    picture.hidden = !chosen;
-    if (!chosen || !state.gestures) return;
-    const { id, revision } = state.gestures;
-    picture.src = api.languages.image(id, chosen.label, revision);
-    picture.alt = `Trajectory of ${chosen.label}, from the dot along the arrow`;
-  }
-
-  /** Offer the gestures and clips; the choice among them stays. */
-  function offer() {
-    const labels = state.gestures?.labels ?? [];
-    const clips = shownClips();
-    const now = JSON.stringify([labels, clips.map(({ id, name }) => [id, name])]);
-    if (now !== offered) {
-      offered = now;
-      const before = [gesture.value, clip.value];
-      gesture.replaceChildren(...labels.map((label) => h("option", { value: label }, label)));
-      clip.replaceChildren(...clips.map(({ id, name }) => h("option", { value: id }, name)));
-      if (labels.includes(before[0])) gesture.value = before[0];
-      if (clips.some(({ id }) => id === before[1])) clip.value = before[1];
-      else if (by() === "clip") followName();
-    }
-    drawPicture();
-  }
-
-  /** The gesture that the chosen clip's name suggests. */
-  function followName() {
-    const name = state.clips.find(({ id }) => id === clip.value)?.name ?? "";
-    const suggested = labelInName(name, state.gestures?.labels ?? []);
-    if (suggested) gesture.value = suggested;
-    drawPicture();
-  }
-
-  function draw() {
-    offer();
-    const byCameraNow = by() === "camera";
-    const missing = !gesture.value
-      ? "The language has no gestures yet."
-      : !byCameraNow && !clip.value
-        ? "Drop a clip, or use the camera: the demonstrations themselves do not count."
-        : diver.value.trim()
-          ? ""
-          : "Name the diver.";
-    note.textContent = missing;
-    note.hidden = !missing;
-    show.disabled = Boolean(missing);
-    byCamera.setAttribute("aria-pressed", String(byCameraNow));
-    byClip.setAttribute("aria-pressed", String(!byCameraNow));
-    camera.element.hidden = !byCameraNow;
-    clipField.hidden = show.hidden = byCameraNow;
-    camera.allow(!missing);
-    camera.draw();
-  }
+  const remove = async (take) =>
+    put({
+      records: await attempt("Removing the take", () =>
+        api.practice.remove(state.language ?? "", take.id),
+      ),
+    });
 
   /** @param {string} text */
-  const say = (text) => render(html`<p class="dim">${text}</p>`, answer);
+  const say = (text) => put({ answer: html`<p class="dim">${text}</p>` });
 
   /**
    * Recognise an attempt, and show the feedback.
@@ -205,20 +138,15 @@ export function open(section) {
    * @param {string} id of the clip
    * @param {{ start: number, end: number } | null} range
    */
-  async function recognise({ language, diver: name, expected }, id, range) {
+  async function recognise({ language, diver, expected }, id, range) {
     say("Recognising\u2026");
     try {
-      const found = await api.practice.show(language, {
-        diver: name,
-        expected,
-        clip_id: id,
-        ...range,
-      });
-      render(feedback(found), answer);
-      answer.scrollIntoView({ block: "nearest" });
+      const found = await api.practice.show(language, { diver, expected, clip_id: id, ...range });
+      put({ answer: feedback(found) });
+      section.querySelector(".practice-answer")?.scrollIntoView({ block: "nearest" });
       await load();
     } catch (error) {
-      render(nothing, answer);
+      put({ answer: nothing });
       complain(error, "Recognition");
     }
   }
@@ -256,49 +184,159 @@ export function open(section) {
     }
   }
 
-  gesture.onchange = drawPicture;
-  clip.onchange = followName;
   /**
-   * @param {string} label
-   * @param {HTMLElement} input
+   * Choose a clip, and the gesture that its name suggests.
+   *
+   * @param {string} clip
    */
-  const field = (label, input) =>
-    elementOf(html`<div class="field"><label for=${input.id}>${label}</label>${input}</div>`);
-  const clipField = field("Clip", clip);
-  clipField.append(olderClipsButton());
-  const form = elementOf(
-    html`<form class="practice-form">
-      ${picture}
-      <div class="practice-fields">
-        ${field("Diver", diver)}${field("Gesture to show", gesture)}
-        <div class="segments" role="group" aria-label="Shown by">${byCamera}${byClip}</div>
-        ${clipField}
-        <div class="practice-actions">${show}</div>
-        ${note}
-      </div>
-      ${camera.element}
-    </form>`,
-  );
-  form.onsubmit = async (event) => {
+  function chooseClip(clip) {
+    now.clip = clip;
+    const name = state.clips.find(({ id }) => id === clip)?.name ?? "";
+    const suggested = labelInName(name, state.gestures?.labels ?? []);
+    if (suggested && by() === "clip") now.expected = suggested;
+  }
+
+  /** @param {SubmitEvent} event */
+  async function submit(event) {
     event.preventDefault();
     if (by() === "camera") return; // Enter in a field.
-    show.disabled = true;
-    await recognise(attempted(), clip.value, null);
-    draw();
-  };
-  render(
-    html`<div class="practice-page">
-      <h1>Practice</h1>
-      <p class="dim">
-        Show a gesture, and read what to change. The record says when a diver’s error rate is proved
-        to be low enough for a dive.
-      </p>
-      ${form}${answer}
-      <h2>Records</h2>
-      ${records}
-    </div>`,
-    section,
-  );
+    put({ busy: true });
+    await recognise(attempted(), now.clip, null);
+    put({ busy: false });
+  }
+
+  function picture() {
+    const { gestures } = state;
+    if (!gestures?.labels.includes(now.expected)) return nothing;
+    return html`<img
+      class="practice-picture"
+      alt="Trajectory of ${now.expected}, from the dot along the arrow"
+      width="160"
+      height="160"
+      src=${api.languages.image(gestures.id, now.expected, gestures.revision)}
+    />`;
+  }
+
+  /**
+   * @param {string} id
+   * @param {string} label
+   * @param {unknown} input
+   */
+  const field = (id, label, input) =>
+    html`<div class="field"><label for=${id}>${label}</label>${input}</div>`;
+
+  /**
+   * @param {"camera" | "clip"} name
+   * @param {string} text
+   */
+  const sourceButton = (name, text) =>
+    html`<button
+      type="button"
+      aria-pressed=${by() === name}
+      @click=${() => {
+        if (name === "clip") camera.stop();
+        put({ source: name });
+      }}
+    >
+      ${text}
+    </button>`;
+
+  /** What is missing for an attempt; empty: nothing. */
+  function missing() {
+    if (!now.expected) return "The language has no gestures yet.";
+    if (by() === "clip" && !now.clip)
+      return "Drop a clip, or use the camera: the demonstrations themselves do not count.";
+    return now.diver.trim() ? "" : "Name the diver.";
+  }
+
+  function draw() {
+    const labels = state.gestures?.labels ?? [];
+    const clips = shownClips();
+    if (!labels.includes(now.expected)) now.expected = labels[0] ?? "";
+    if (!clips.some(({ id }) => id === now.clip)) chooseClip(clips[0]?.id ?? "");
+    const none = html`<p class="dim">Nobody has practised yet.</p>`;
+    const note = missing();
+    render(
+      html`<div class="practice-page">
+        <h1>Practice</h1>
+        <p class="dim">
+          Show a gesture, and read what to change. The record says when a diver’s error rate is
+          proved to be low enough for a dive.
+        </p>
+        <form class="practice-form" @submit=${submit}>
+          ${picture()}
+          <div class="practice-fields">
+            ${field(
+              "practice-diver",
+              "Diver",
+              html`<input
+                type="text"
+                id="practice-diver"
+                autocomplete="off"
+                .value=${live(now.diver)}
+                ${limited(MAX_DIVER_LENGTH)}
+                @input=${(/** @type {any} */ { target }) => {
+                  tabStore.set(KEY, target.value);
+                  put({ diver: target.value });
+                }}
+              />`,
+            )}${field(
+              "practice-gesture",
+              "Gesture to show",
+              html`<select
+                id="practice-gesture"
+                @change=${(/** @type {any} */ { target }) => put({ expected: target.value })}
+              >
+                ${optionsOf(asOptions(labels), now.expected)}
+              </select>`,
+            )}
+            <div class="segments" role="group" aria-label="Shown by">
+              ${sourceButton("camera", "Camera")}${sourceButton("clip", "Clip")}
+            </div>
+            <div class="field" ?hidden=${by() === "camera"}>
+              <label for="practice-clip">Clip</label
+              ><select
+                id="practice-clip"
+                @change=${(/** @type {any} */ { target }) => {
+                  chooseClip(target.value);
+                  draw();
+                }}
+              >
+                ${guard([state.clips, state.gestures, now.clip], () =>
+                  optionsOf(
+                    clips.map(({ id, name }) => [id, name]),
+                    now.clip,
+                  ),
+                )}</select
+              >${olderClips}
+            </div>
+            <div class="practice-actions">
+              <button
+                type="submit"
+                class="primary"
+                data-writes
+                ?hidden=${by() === "camera"}
+                ?disabled=${now.busy || Boolean(note)}
+              >
+                Show it by this clip
+              </button>
+            </div>
+            <p class="dim" ?hidden=${!note}>${note}</p>
+          </div>
+          ${camera.panel({ hidden: by() === "clip", possible: !note })}
+        </form>
+        <div class="practice-answer" role="status">${now.answer}</div>
+        <h2>Records</h2>
+        <div class="record-card">
+          ${guard([now.records, state.clips], () =>
+            now.records?.length ? now.records.map((each) => recordCard(each, remove)) : none,
+          )}
+        </div>
+      </div>`,
+      section,
+    );
+  }
+
   takeFilesIn("practice", (files) => addFiles(files));
   follow(["gestures", "clips"], draw);
   follow(["clips", "jobs"], workOff);

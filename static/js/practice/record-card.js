@@ -1,13 +1,11 @@
 // The records of practice: the evidence that each diver's takes give, and the takes themselves.
 
-import { askWhich, percent, plural } from "../core/format.js";
+import { answerOf, headsOf, takeLink, takeRow, takesTable } from "../clips/takes.js";
+import { percent, plural } from "../core/format.js";
 import { placeIn, state } from "../core/state.js";
-import { address, go, here } from "../core/views.js";
 import { html, iconButtonOf, nothing, progressBar } from "../templates.js";
 
 /** @import { PracticeRecord, PracticeTake } from "../core/types.d.ts" */
-
-/** @typedef {(take: PracticeTake) => void} Remove */
 
 /**
  * The evidence of a record in words, and what is missing.
@@ -22,42 +20,26 @@ export function evidenceOf({ takes, errors, bound, limit: most, reached, more, c
     : `${counted}: ${plural(more, "more take")} without an error for under ${percent(most)} errors at ${sure}.`;
 }
 
-/** @param {PracticeTake} take */
-function readAs({ right, pair, label }) {
-  if (right) return " recognised";
-  return pair ? ` asked back: ${askWhich(pair)}` : ` read as ${label ?? "nothing"}`;
-}
-
 /**
  * @param {PracticeTake} take
- * @param {Remove} remove
+ * @param {(take: PracticeTake) => void} remove
  */
-function takeRow(take, remove) {
-  const { right, pair, expected, revision, added_by: by } = take;
+function row(take, remove) {
+  const { expected, revision, added_by: by } = take;
   const clip = state.clips.find(({ id }) => id === take.clip_id);
-  const place = placeIn(take.clip_id, { recognition: take.recognition_id });
-  return html`<li class=${right ? "right" : pair ? "asked" : "wrong"}>
-    <span aria-hidden="true">${right ? "\u2713" : pair ? "?" : "\u2260"}</span>
-    <span
-      ><b>${expected}</b>${readAs(take)}<small class="dim">
-        revision ${revision}${by ? `, added by ${by}` : ""}</small
-      ></span
-    >
-    ${
-      clip
-        ? html`<a href=${address("studio", place)} @click=${here(() => go("studio", place))}
-            >${clip.name}</a
-          >`
-        : html`<span class="dim">its clip was deleted</span>`
-    }${iconButtonOf("close", `Remove this take of ${expected}`, () => remove(take), {
-      writes: true,
-    })}
-  </li>`;
+  return takeRow([
+    clip
+      ? takeLink(clip.name, placeIn(take.clip_id, { recognition: take.recognition_id }))
+      : html`<span class="dim">its clip was deleted</span>`,
+    expected,
+    answerOf(take, `revision ${revision}${by ? `, added by ${by}` : ""}`),
+    iconButtonOf("close", `Remove this take of ${expected}`, () => remove(take), { writes: true }),
+  ]);
 }
 
 /**
  * @param {PracticeRecord} record
- * @param {Remove} remove
+ * @param {(take: PracticeTake) => void} remove
  */
 export function recordCard(record, remove) {
   const { diver, reached, takes, more, pairs, older, shown } = record;
@@ -73,9 +55,11 @@ export function recordCard(record, remove) {
     )}
     <details>
       <summary>${plural(shown.length, "take")}</summary>
-      <ul class="practice-takes">
-        ${shown.map((take) => takeRow(take, remove))}
-      </ul>
+      ${takesTable(
+        `Takes of ${diver}`,
+        headsOf(["Clip", "Shows", "Read as"]),
+        shown.map((take) => row(take, remove)),
+      )}
     </details>
   </section>`;
 }

@@ -1,6 +1,6 @@
 // The panel in the middle while there is nothing to show: how to begin, or the progress.
 
-import { BUSY } from "../clips/busy.js";
+import { BUSY } from "../clips/batch.js";
 import { needsTopic, select, statusText } from "../clips/clip-store.js";
 import { addSampleClip, samplesList } from "../clips/sample-clips.js";
 import { topicsPanel } from "../clips/topic-dialog.js";

@@ -26,7 +26,7 @@ def test_a_camera_is_denied_then_allowed_and_lost_in_the_middle(
 ) -> None:
     page = open_page({"view": "live"}, scene=False)
     page.get_by_role("button", name="Start the camera").click()
-    problem = page.locator("#live-problem")
+    problem = page.locator("#view-live .camera-problem")
     expect(problem).to_contain_text("The camera was not allowed")
     expect(problem).to_contain_text("Allow it for this page")
 
@@ -79,7 +79,7 @@ def test_a_camera_that_another_program_holds_is_tried_again_and_a_mirror_unless_
     page.context.grant_permissions(["camera"])
     page.evaluate(BUSY)
     page.get_by_role("button", name="Start the camera").click()
-    problem = page.locator("#live-problem")
+    problem = page.locator("#view-live .camera-problem")
     expect(problem).to_contain_text("The camera does not answer")
     expect(problem).to_contain_text("Another program or tab may be using it")
     expect(page.get_by_role("button", name="Start the camera")).to_be_visible()

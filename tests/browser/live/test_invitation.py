@@ -57,7 +57,7 @@ navigator.mediaDevices.getUserMedia = async () => {
 };
 new MutationObserver((changes) => {
   for (const { target } of changes)
-    if (target.matches?.(".picture.recording") && video.paused) {
+    if (target.matches?.(".camera-picture.recording") && video.paused) {
       video.src = clips[document.querySelector("h2").textContent];
       setTimeout(() => video.play(), 4000); // later than the shortest recording allows
     }
@@ -153,7 +153,7 @@ def test_three_people_finish_a_language(
     expect(invitation).to_contain_text("0 of 12 takes sent")
 
     # Bo shows every gesture hands-free before the camera of the phone.
-    views = OTHER_VIEWS % (".figure", ".picture video")
+    views = OTHER_VIEWS % (".figure", ".camera-picture video")
     camera = CAMERA.replace("LABELS", json.dumps(GESTURES)).replace("OTHER_VIEWS", views)
     bo = phone(link, camera)
     looks = watch_looks(bo)
@@ -166,7 +166,7 @@ def test_three_people_finish_a_language(
     bo.get_by_role("list", name="Gestures").get_by_role("button", name="line").click()
     bo.get_by_role("button", name="Show hands-free").click()
     expect(bo.get_by_text("Next: line. Step back.")).to_be_visible()
-    expect(bo.locator(".picture.recording")).to_be_visible()
+    expect(bo.locator(".camera-picture.recording")).to_be_visible()
     # What the server sees is told as in Live.
     expect(bo.locator(".step")).to_have_text(re.compile("^(Waiting for|Salute|Show the gesture, )"))
     picture(bo, "invitation")
@@ -205,7 +205,7 @@ def test_three_people_finish_a_language(
         assert divers_of(client, language, label) == ["Ana", "Bo", "Cy"]
     expect(expected).to_contain_text("Of 6 demonstrations", timeout=JUDGED_MS)
     expect(page.get_by_role("img", name=re.compile("^Read right of people"))).to_be_visible()
-    takes = invitation.get_by_role("listitem")
+    takes = invitation.get_by_role("row")
     expect(takes.filter(has_text="circle by Bo")).to_contain_text("added")
     expect(takes.filter(has_text="circle by Cy").first).to_contain_text(f"returned: {reason}")
 

@@ -21,7 +21,7 @@ FEED_RATE = 2
 moves at a sixth of the speed and a busy machine sees enough of the salutes."""
 
 COUNTED = """() => {
-  const count = document.getElementById("live-count");
+  const count = document.querySelector("#view-live .camera-count");
   window.counted = [];
   new MutationObserver(() => counted.push(count.textContent)).observe(count, { childList: true });
 }"""
@@ -71,7 +71,7 @@ def test_the_camera_shows_landmarks_and_what_the_salute_does(
     expect(page.get_by_role("button", name="Start the camera")).to_be_visible()
     page.keyboard.press("Space")
     expect(page.get_by_text("any of 8 gestures of \u201cTable 2")).to_be_visible()
-    expect(page.locator("#live-picture .bones")).to_have_attribute("d", re.compile("^M.+L"))
+    expect(page.locator("#view-live .bones")).to_have_attribute("d", re.compile("^M.+L"))
     expect(page.get_by_text("Frames a second")).to_be_visible()
     expect(page.get_by_text("Latency")).to_be_visible()
     showing = page.locator(".live-state").filter(has_text="Show the gesture, then salute again.")
@@ -114,7 +114,7 @@ def test_a_clip_is_recorded_from_the_camera_after_a_countdown(
     page.keyboard.press("r")
     expect(page.get_by_role("button", name="Stop recording")).to_be_visible()
     assert page.evaluate("window.counted") == ["3", "2", "1", ""]
-    expect(page.locator("#live-count")).to_be_hidden()
+    expect(page.locator("#view-live .camera-count")).to_be_hidden()
     see_seconds(page, 1.5)
     page.get_by_role("button", name="Stop recording").click()
     page.get_by_role("button", name="Show it").click()

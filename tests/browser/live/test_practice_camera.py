@@ -106,7 +106,7 @@ def test_a_gesture_shown_to_the_camera_is_judged_and_counted(
     # The camera repeats the take, so that others may have been counted by now.
     record = page.get_by_role("region", name="Ana")
     expect(record).to_contain_text(re.compile(r"\d errors in \d+ takes?:"))
-    expect(record).to_contain_text("line recognised")
+    expect(record).to_contain_text("right: line")
     stop.click()
     expect(page.get_by_text("The camera is off")).to_be_visible()
     names = [each.clip.name for each in server.studio.clips.all()]

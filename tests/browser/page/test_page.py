@@ -31,7 +31,7 @@ def test_a_key_pressed_right_after_a_tab_counts_and_a_missing_camera_is_explaine
     page = open_page(scene=False)
     page.get_by_role("link", name="Live").click()
     page.keyboard.press("Space")
-    problem = page.locator("#live-problem")
+    problem = page.locator("#view-live .camera-problem")
     expect(problem).to_contain_text("No camera found")
     expect(problem).to_contain_text("play a clip as if live")
     expect(problem.get_by_role("button", name="Try again")).to_be_visible()
