@@ -67,7 +67,7 @@ export const takeRow = (cells, look = "") =>
   </tr>`;
 
 /**
- * A table of takes, whose columns have these heads; the last one, without a head, is for buttons.
+ * A table of takes, whose columns have these heads.
  *
  * @param {string} caption
  * @param {unknown[]} heads
@@ -82,7 +82,6 @@ export const takesTable = (caption, heads, rows) =>
       <thead>
         <tr>
           ${heads}
-          <td></td>
         </tr>
       </thead>
       <tbody>
@@ -91,5 +90,10 @@ export const takesTable = (caption, heads, rows) =>
     </table>
   </div>`;
 
-/** @param {string[]} names */
-export const headsOf = (names) => names.map((name) => html`<th scope="col">${name}</th>`);
+/**
+ * The heads of columns; one of buttons has no name.
+ *
+ * @param {string[]} names
+ */
+export const headsOf = (names) =>
+  names.map((name) => (name ? html`<th scope="col">${name}</th>` : html`<td></td>`));

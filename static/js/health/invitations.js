@@ -292,7 +292,7 @@ function row(language, { id, created, expires, closed, most_takes: most, takes, 
       shown.length
         ? takesTable(
             "Takes",
-            headsOf(["Shows", "Became"]),
+            headsOf(["Shows", "Became", ""]),
             repeat(
               shown,
               (take) => take.id,

@@ -220,7 +220,7 @@ function list(takes) {
       )}
     </p>`;
   return html`${filter}
-  ${takesTable("The test clips", headsOf(["Clip", "Shows", "Read as", "Confidence"]), [
+  ${takesTable("The test clips", headsOf(["Clip", "Shows", "Read as", "Confidence", ""]), [
     cell ? "" : repeat(uploadsHere(), ({ key }) => key, uploadRow),
     cell ? "" : repeat(waitingClips(), ({ clip }) => clip.id, waitingRow),
     onChange(() =>

@@ -57,7 +57,7 @@ export function recordCard(record, remove) {
       <summary>${plural(shown.length, "take")}</summary>
       ${takesTable(
         `Takes of ${diver}`,
-        headsOf(["Clip", "Shows", "Read as"]),
+        headsOf(["Clip", "Shows", "Read as", ""]),
         shown.map((take) => row(take, remove)),
       )}
     </details>

@@ -19,7 +19,7 @@ import { byDistance } from "./vote-order.js";
 import { supportOf } from "./vote-support.js";
 import { drawTimeline } from "./timeline.js";
 import { enlargePicture } from "./clip-picture.js";
-import { buildTransport } from "./transport.js";
+import { bindTransport } from "./transport.js";
 import { show } from "./workspace.js";
 
 /** @import { Clip, Recognition, SelectedRange, State, Take, Timeline } from "../core/types.d.ts" */
@@ -329,7 +329,7 @@ export function stageButtons() {
   byId("save-gesture").onclick = () =>
     saveGesture().catch((error) => complain(error, "Saving the gesture"));
   byId("recognise").onclick = recognise;
-  buildTransport();
+  bindTransport();
   enlargePicture();
   buildRanges(hasLanguage);
 }

@@ -4,7 +4,7 @@ import { byId } from "../core/dom.js";
 import { moment } from "../core/format.js";
 import { bind } from "../core/key-bindings.js";
 import { isReadable, state, update } from "../core/state.js";
-import { buttonOf, elementOf, html, iconOf, render } from "../templates.js";
+import { buttonOf, html, iconOf, ifDefined, render } from "../templates.js";
 import { loop, play, step } from "./playback.js";
 import { cubeButton, followChoice } from "./clip-picture.js";
 import { setEnd, setStart, ZOOMS } from "./timeline.js";
@@ -17,9 +17,9 @@ const SPEEDS = [0.25, 0.5, 1, 2];
 const FASTEST = 16;
 const GROUP = "Playback";
 
-const speed = () => Number(byId("speed").value);
+let speed = 1; // as chosen
 
-const toggle = () => play(state.position?.playing ? 0 : speed());
+const toggle = () => play(state.position?.playing ? 0 : speed);
 
 /**
  * Handle J and L: reverse at normal speed, or double the speed in the same direction.
@@ -49,51 +49,24 @@ function neighbour(by) {
  * @param {string} label
  * @param {string} keys
  * @param {() => unknown} run
+ * @param {{ icon?: string, pressed?: boolean }} [more]
  */
-const button = (name, label, keys, run) =>
+const button = (name, label, keys, run, { icon = name, pressed } = {}) =>
   html`<button
     type="button"
     class="quiet icon"
     id="do-${name}"
     aria-label=${label}
+    aria-pressed=${ifDefined(pressed)}
     title=${keys ? `${label} (${keys})` : label}
     @click=${run}
   >
-    ${iconOf(name)}
+    ${iconOf(icon)}
   </button>`;
 
-/** Build the bar, and bind its keys. */
-export function buildTransport() {
-  const changed = () => {
-    if (state.position?.playing) play(speed());
-  };
-  render(
-    html`<div class="transport-buttons">
-        ${button("back", "One frame back", ",", () => step(-1))}
-        ${button("play", "Play", "Space", toggle)}
-        ${button("forth", "One frame on", ".", () => step(1))}
-      </div>
-      <p class="clock" id="clock"></p>
-      <small
-        class="dim num"
-        id="picture-of"
-        title="Not every picture of a clip this long is kept. Choose a take or a shorter range to see all of them."
-      ></small>
-      <label class="visually-hidden" for="speed">Speed</label>
-      <select id="speed" title="Speed" @change=${changed}>
-        ${SPEEDS.map((each) => html`<option value=${each} ?selected=${each === 1}>${each}×</option>`)}
-      </select>
-      ${button("loop", "Repeat the range", "", () => loop(!state.position?.loop))}
-      <span class="joined edges"
-        >${buttonOf("Start here", setStart, { title: "Let the range start here ([)" })}${buttonOf(
-          "End here",
-          setEnd,
-          { title: "Let the range end here (])" },
-        )}</span
-      >
-      ${tracksButton()}${cubeButton()}`,
-    byId("transport"),
-  );
+/** Draw the bar, and bind its keys. */
+export function bindTransport() {
+  drawTransport(state);
   followChoice({ changed: showFlat, play: toggle });
   const when = () => isReadable() && state.position !== null && !byId("view-studio").hidden;
   /**
@@ -118,27 +91,62 @@ export function buildTransport() {
   keys(["]"], "Let the range end here", setEnd);
 }
 
+const NOWHERE = {
+  playing: false,
+  speed: 1,
+  loop: false,
+  frame: 0,
+  frames: 0,
+  time: 0,
+  picture: null,
+};
+
+const tracks = tracksButton();
+
 /**
- * Show where the clock stands.
+ * Draw the bar, and where the clock stands.
  *
  * @param {State} state
  */
 export function drawTransport({ position }) {
   const bar = byId("transport");
   bar.hidden = !position || !isReadable();
-  if (bar.hidden || !position) return;
-  const { playing, frame, frames, time } = position;
-  const toggles = byId("do-play");
-  const label = playing ? "Pause" : "Play";
-  if (toggles.getAttribute("aria-label") !== label) {
-    toggles.replaceChildren(elementOf(iconOf(playing ? "pause" : "play")));
-    toggles.setAttribute("aria-label", label);
-    toggles.title = `${label} (Space)`;
-  }
+  const { playing, frame, frames, time, picture, loop: looped, speed: now } = position ?? NOWHERE;
   // If the picture on display is another frame's, its number is shown too.
-  const other = !playing && position.picture !== null && position.picture !== frame;
-  byId("picture-of").textContent = other ? `picture of frame ${position.picture}` : "";
-  byId("do-loop").setAttribute("aria-pressed", String(position.loop));
-  const rate = playing && Math.abs(position.speed) !== 1 ? `, ${position.speed}\u00d7` : "";
-  render(html`<b>${moment(time)}</b> frame ${frame} of ${frames}${rate}`, byId("clock"));
+  const other = !playing && picture !== null && picture !== frame;
+  const rate = playing && Math.abs(now) !== 1 ? `, ${now}\u00d7` : "";
+  const clock = html`<b>${moment(time)}</b> frame ${frame} of ${frames}${rate}`;
+  const choose = (/** @type {any} */ { target }) => {
+    speed = Number(target.value);
+    if (state.position?.playing) play(speed);
+  };
+  render(
+    html`<div class="transport-buttons">
+        ${button("back", "One frame back", ",", () => step(-1))}
+        ${button("play", playing ? "Pause" : "Play", "Space", toggle, {
+          icon: playing ? "pause" : "play",
+        })}
+        ${button("forth", "One frame on", ".", () => step(1))}
+      </div>
+      <p class="clock" id="clock">${clock}</p>
+      <small
+        class="dim num"
+        title="Not every picture of a clip this long is kept. Choose a take or a shorter range to see all of them."
+        >${other ? `picture of frame ${picture}` : ""}</small
+      >
+      <label class="visually-hidden" for="speed">Speed</label>
+      <select id="speed" title="Speed" @change=${choose}>
+        ${SPEEDS.map((each) => html`<option value=${each} ?selected=${each === 1}>${each}×</option>`)}
+      </select>
+      ${button("loop", "Repeat the range", "", () => loop(!looped), { pressed: looped })}
+      <span class="joined edges"
+        >${buttonOf("Start here", setStart, { title: "Let the range start here ([)" })}${buttonOf(
+          "End here",
+          setEnd,
+          { title: "Let the range end here (])" },
+        )}</span
+      >
+      ${tracks}${cubeButton()}`,
+    bar,
+  );
 }
