@@ -168,7 +168,8 @@ class TakeStore(DatabaseStore):
         """Return the takes of test set and practice, the oldest first, each range once."""
         tested = [each.take for each in self.tested(language_id)]
         takes: list[KnownTake] = [*tested, *self.practised(language_id)]
-        return list({(each.clip_id, round(each.start, 2)): each for each in takes}.values())
+        once = {(each.clip_id, round(each.start, 2)): each for each in takes}
+        return sorted(once.values(), key=lambda each: each.created)
 
     def practise(self, take: PracticeTake) -> None:
         """Store a take of practice; it replaces the same take recognised by the same revision."""

@@ -1,5 +1,6 @@
-"""Test sets: labelled takes of a language, their results, and those of older versions."""
+"""Takes of test sets and of practice: their labels, results, and those of older versions."""
 
+from datetime import timedelta
 from pathlib import Path
 
 import pytest
@@ -13,6 +14,7 @@ from app.store import (
     LabelledTake,
     LanguageStore,
     NotFound,
+    PracticeTake,
     RecognitionRecord,
     RecognitionStore,
     TakeStore,
@@ -95,6 +97,29 @@ def test_a_take_of_another_language_is_not_found(
         store.label(other, kept.id, "line")
     with pytest.raises(NotFound):
         store.remove(LabelledTake, other, kept.id)
+
+
+def test_known_takes_come_in_the_order_of_their_making_and_each_range_once(
+    store: TakeStore, take: LabelledTake
+) -> None:
+    def practise(start: float, days: int) -> PracticeTake:
+        made = PracticeTake(
+            language_id=take.language_id,
+            clip_id=take.clip_id,
+            start=start,
+            diver="Ana",
+            expected="circle",
+            revision=1,
+            recognition_id="0" * 32,
+            created=take.created + timedelta(days=days),
+        )
+        store.practise(made)
+        return made
+
+    store.add([take, again(take, start=3.0)])
+    old, new, same = practise(4.0, -1), practise(5.0, 2), practise(3.0, 1)
+    known = [each.id for each in store.known(take.language_id)]
+    assert known == [old.id, take.id, same.id, new.id]
 
 
 def test_takes_of_deleted_clips_are_hidden_and_come_back(
