@@ -75,15 +75,20 @@ export const iconButtonOf = (name, label, run, { writes = false, id, disabled = 
  *
  * @param {unknown} words
  * @param {() => unknown} run
- * @param {{ look?: string, writes?: boolean, title?: string, label?: string, id?: string, disabled?: unknown, hidden?: boolean }} [more]
+ * @param {{ look?: string, writes?: boolean, title?: string, label?: string, id?: string, disabled?: unknown, hidden?: boolean, pressed?: boolean }} [more]
  */
-export const buttonOf = (words, run, { look, writes, title, label, id, disabled, hidden } = {}) =>
+export const buttonOf = (
+  words,
+  run,
+  { look, writes, title, label, id, disabled, hidden, pressed } = {},
+) =>
   html`<button
     type="button"
     class=${ifDefined(look)}
     id=${ifDefined(id)}
     title=${ifDefined(title)}
     aria-label=${ifDefined(label)}
+    aria-pressed=${ifDefined(pressed)}
     ?data-writes=${writes}
     ?disabled=${disabled}
     ?hidden=${hidden}

@@ -158,7 +158,8 @@ export function makeCamera({ instead, draw, start, stop }) {
         place,
       );
       watching = opened;
-      return { ...opened, goesOn: () => watching === opened };
+      const goesOn = () => watching === opened;
+      return { ...opened, goesOn, stop: () => goesOn() && unwatch() };
     },
     /** Whether there is a picture, or something to say of it. */
     isThere: () => shown.on || shown.busy || shown.trouble !== null,

@@ -70,7 +70,7 @@ export function takeCamera({ draw, ended, again }) {
     });
     const recording = ready ? camera.record() : null;
     if (!recording) {
-      camera.unwatch();
+      opened.stop();
       return null;
     }
     look.begun = true;
@@ -89,7 +89,7 @@ export function takeCamera({ draw, ended, again }) {
         resolve(null);
       }, 100);
     });
-    camera.unwatch();
+    opened.stop();
     camera.put({ recording: false, share: null });
     sound("end");
     const file = await recording.stop("take");

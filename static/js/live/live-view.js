@@ -231,13 +231,7 @@ const cameraChoice = () =>
 function controls() {
   const { on, busy } = camera.shown;
   const source = (/** @type {"clip" | null} */ name, /** @type {string} */ text) =>
-    html`<button
-      type="button"
-      aria-pressed=${(name === "clip") === fromClip()}
-      @click=${() => chooseSource(name)}
-    >
-      ${text}
-    </button>`;
+    buttonOf(text, () => chooseSource(name), { pressed: (name === "clip") === fromClip() });
   const words = now.recording ? "Stop recording" : now.counting ? "Cancel" : "Record a clip";
   return html`<div class="live-controls">
     <div class="segments" role="group" aria-label="Source">

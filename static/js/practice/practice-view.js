@@ -12,7 +12,17 @@ import { askWhich } from "../core/format.js";
 import { follow, state } from "../core/state.js";
 import { MAX_DIVER_LENGTH } from "../core/text-limit.js";
 import { attempt, complain } from "../core/toasts.js";
-import { asOptions, guard, html, limited, live, nothing, optionsOf, render } from "../templates.js";
+import {
+  asOptions,
+  buttonOf,
+  guard,
+  html,
+  limited,
+  live,
+  nothing,
+  optionsOf,
+  render,
+} from "../templates.js";
 import { addFiles, takeFilesIn } from "../upload/upload-list.js";
 import { practiceCamera } from "./practice-camera.js";
 import { recordCard } from "./record-card.js";
@@ -229,17 +239,13 @@ export function open(section) {
    * @param {"camera" | "clip"} name
    * @param {string} text
    */
-  const sourceButton = (name, text) =>
-    html`<button
-      type="button"
-      aria-pressed=${by() === name}
-      @click=${() => {
-        if (name === "clip") camera.stop();
-        put({ source: name });
-      }}
-    >
-      ${text}
-    </button>`;
+  const sourceButton = (name, text) => {
+    const choose = () => {
+      if (name === "clip") camera.stop();
+      put({ source: name });
+    };
+    return buttonOf(text, choose, { pressed: by() === name });
+  };
 
   /** What is missing for an attempt; empty: nothing. */
   function missing() {

@@ -4,11 +4,10 @@ import { nearestFrame } from "../clips/frame-times.js";
 import { versionOf } from "../clips/clip-store.js";
 import * as api from "../core/api.js";
 import { browserStore } from "../core/browser-store.js";
-import { h } from "../core/dom.js";
 import { readable } from "../core/format.js";
 import { selectedClip, selectedRange, state } from "../core/state.js";
 import { attempt } from "../core/toasts.js";
-import { html, render } from "../templates.js";
+import { buttonOf, html, render } from "../templates.js";
 import { linePath } from "./timeline-curves.js";
 import { movingWrists, tracksOf } from "./wrist-motion.js";
 
@@ -21,25 +20,21 @@ let open = browserStore.get(KEY) !== null;
 /** @type {{ clip: string, poses: Promise<Poses | null> } | null} */
 let loaded = null;
 
-/** The button in the transport bar. */
-export const tracksButton = () =>
-  h(
-    "button",
-    {
-      type: "button",
-      id: "do-tracks",
-      title: "Show where the moving wrists are over time (G)",
-      "aria-pressed": String(open),
-      onclick: toggleTracks,
-    },
-    "Tracks",
-  );
+/**
+ * The button in the transport bar.
+ *
+ * @param {() => void} toggle
+ */
+export const tracksButton = (toggle) =>
+  buttonOf("Tracks", toggle, {
+    title: "Show where the moving wrists are over time (G)",
+    pressed: open,
+  });
 
 /** Show the tracks, or hide them; remembered. */
 export function toggleTracks() {
   open = !open;
   browserStore.set(KEY, open ? "shown" : null);
-  document.getElementById("do-tracks")?.setAttribute("aria-pressed", String(open));
   drawTracks();
 }
 

@@ -85,7 +85,7 @@ export function bindTransport() {
   keys(["L"], "Play; again: twice as fast", () => shuttle(1));
   keys(["T"], "Next take", () => neighbour(1));
   keys(["Shift+T"], "Take before", () => neighbour(-1));
-  keys(["G"], "Tracks of the wrists", toggleTracks);
+  keys(["G"], "Tracks of the wrists", switchTracks);
   for (const { key, text, zoom } of ZOOMS) keys([key, `Shift+${key}`], text, zoom);
   keys(["["], "Let the range start here", setStart);
   keys(["]"], "Let the range end here", setEnd);
@@ -101,7 +101,10 @@ const NOWHERE = {
   picture: null,
 };
 
-const tracks = tracksButton();
+const switchTracks = () => {
+  toggleTracks();
+  drawTransport(state);
+};
 
 /**
  * Draw the bar, and where the clock stands.
@@ -146,7 +149,7 @@ export function drawTransport({ position }) {
           { title: "Let the range end here (])" },
         )}</span
       >
-      ${tracks}${cubeButton()}`,
+      ${tracksButton(switchTracks)}${cubeButton()}`,
     bar,
   );
 }
