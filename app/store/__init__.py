@@ -30,7 +30,6 @@ from app.store.models import (
     RecognitionRecord,
 )
 from app.store.quotas import NO_QUOTA, Quota, QuotaExceeded, QuotaStore, Usage
-from app.store.recognitions import RecognitionStore
-from app.store.takes import KnownTake, TakeStore, TestedTake, TestSetFull
+from app.store.takes import KnownTake, RecognitionStore, TakeStore, TestedTake, TestSetFull
 from app.store.tokens import NamedToken, Role, SignInStore, TokenFile
 from app.store.uploads import Upload, UploadStore

@@ -1,4 +1,4 @@
-"""Store of takes whose gesture is known: of test sets and of practice, with their results."""
+"""Store of takes: how they were recognised, and those of test sets and practice with results."""
 
 from __future__ import annotations
 
@@ -14,9 +14,13 @@ from app.store.models import (
     Clip,
     LabelledResult,
     LabelledTake,
+    LanguageRecord,
     PracticeTake,
     RecognitionRecord,
 )
+from app.store.quotas import NO_QUOTA, Quota
+
+_VISIBLE = (col(Clip.deleted).is_(None), col(LanguageRecord.deleted).is_(None))
 
 MOST_TAKES = 500
 """Most takes of a language's test set: more would delay every change of the language by minutes."""
@@ -239,3 +243,51 @@ def _drop(session: Session, result: LabelledResult) -> None:
         session.execute(
             delete(RecognitionRecord).where(col(RecognitionRecord.id) == result.recognition_id)
         )
+
+
+class RecognitionStore(DatabaseStore):
+    """Keeps recognitions in `database`; those of deleted clips and languages are hidden."""
+
+    def add(self, record: RecognitionRecord, quota: Quota = NO_QUOTA) -> RecognitionRecord:
+        """Store `record` for the owner of a quota.
+
+        Raises
+        ------
+        QuotaExceeded
+            When the owner may not keep as much.
+
+        """
+        record.owner, record.size = quota.owner, len(record.result.encode())
+        with self._database.writing() as session:
+            quota.require_in(session, record.size)
+            session.add(record)
+        return record
+
+    def get(self, recognition_id: str) -> RecognitionRecord:
+        """Return a recognition.
+
+        Raises
+        ------
+        NotFound
+            When there is none.
+
+        """
+        with self._database.reading() as session:
+            query = select(RecognitionRecord).join(Clip).join(LanguageRecord)
+            query = query.where(RecognitionRecord.id == recognition_id, *_VISIBLE)
+            if (record := session.exec(query).first()) is None:
+                raise NotFound(f"there is no recognition {recognition_id!r}")
+            return record
+
+    def all(
+        self, *, clip_id: str | None = None, language_id: str | None = None, limit: int
+    ) -> list[RecognitionRecord]:
+        """Return the newest `limit` recognitions of a clip, of a language, or of all."""
+        with self._database.reading() as session:
+            query = select(RecognitionRecord).join(Clip).join(LanguageRecord).where(*_VISIBLE)
+            if clip_id is not None:
+                query = query.where(RecognitionRecord.clip_id == clip_id)
+            if language_id is not None:
+                query = query.where(RecognitionRecord.language_id == language_id)
+            query = query.order_by(col(RecognitionRecord.created).desc()).limit(limit)
+            return list(session.exec(query))

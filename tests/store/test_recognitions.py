@@ -3,7 +3,7 @@
 import pytest
 
 from app.store import ClipStore, Database, LanguageStore, NotFound, RecognitionRecord
-from app.store.recognitions import RecognitionStore
+from app.store.takes import RecognitionStore
 from tests.store.conftest import add_clip
 from tests.store.test_languages import draft
 
