@@ -11,6 +11,7 @@ import cmath
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass, field
+from functools import lru_cache
 from itertools import pairwise
 from operator import itemgetter
 
@@ -268,7 +269,13 @@ def _wide_salute(shape: _HandShape) -> float:
 
 def best_salute(hands: Iterable[Hand]) -> float:
     """Return the score of the hand that salutes most, left or right; 0 without a hand."""
-    return max((salute_score(hand.xy) for hand in hands), default=0.0)
+    return max(map(_score_hand, hands), default=0.0)
+
+
+@lru_cache(maxsize=32)
+def _score_hand(hand: Hand) -> float:
+    # Kept for the hands of the last frames: the choice of the person and the trigger ask for it.
+    return salute_score(hand.xy)
 
 
 @dataclass
