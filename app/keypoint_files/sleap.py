@@ -115,7 +115,7 @@ def _table_without_scores(file: Any) -> KeypointTable:
     name = named[chosen] if chosen < len(named) else str(chosen)
     return KeypointTable(
         names=names,
-        xy=mask_unseen(xy[chosen], None, 0.0),
+        xy=mask_unseen(xy[chosen], None),
         times=Times(np.arange(xy.shape[1], dtype=np.float64), counted=True),
         notes=_tell_track(len(xy), name),
         people=np.asarray(np.isfinite(xy).all(axis=3)).any(axis=2).sum(axis=0, dtype=np.int64),
