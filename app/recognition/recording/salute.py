@@ -290,11 +290,9 @@ class HeldTrigger:
     Attributes
     ----------
     hold
-        Seconds of salute until it counts.
-    dropout
-        Seconds without salute until it is over.
-    enter, leave
-        Scores from which it begins, and down to which it continues.
+        Seconds of salute until it counts; `DROPOUT_SECONDS` without end it.
+    leave
+        Score down to which it continues, begun at `ENTER_SCORE`.
     held
         Whether a salute counts now.
     since, until
@@ -304,8 +302,6 @@ class HeldTrigger:
     """
 
     hold: float = HOLD_SECONDS
-    dropout: float = DROPOUT_SECONDS
-    enter: float = ENTER_SCORE
     leave: float = LEAVE_SCORE
     held: bool = field(default=False, init=False)
     since: float | None = field(default=None, init=False)
@@ -333,12 +329,12 @@ class HeldTrigger:
         if previous is not None:
             before, score_before = previous
             seen = time - before < REACHES
-            if seen and min(score_before, score) >= (self.leave if active else self.enter):
+            if seen and min(score_before, score) >= (self.leave if active else ENTER_SCORE):
                 if not active:
                     self.since = before
                 self._collected += min(time - before, self.hold / 2)
                 self.until = time
-        if self.until is not None and time - self.until > self.dropout:
+        if self.until is not None and time - self.until > DROPOUT_SECONDS:
             self.held, self._collected = False, 0.0
         # The tolerance is for a sum of floats that misses `hold` by the last bit.
         elif self._collected >= self.hold - 1e-9:
