@@ -334,6 +334,12 @@ def _choose_person(
     return followed, choice
 
 
+def tell_track(count: int, name: str) -> tuple[str, ...]:
+    """Return a note on the track that is followed, if there are several."""
+    followed = f"of {count} people track {name!r} stands out most and is followed"
+    return (followed,) if count > 1 else ()
+
+
 def frame_number(name: str) -> int | None:
     """Return the number of a frame in the name of its file or image: the last one; else None."""
     digits = re.search(r"(\d{1,15})\D*$", PurePath(name).stem)

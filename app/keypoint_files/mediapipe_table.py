@@ -25,7 +25,7 @@ from app.keypoint_files.column_names import (
     plain,
     time_column,
 )
-from app.keypoint_files.keypoint_people import name_points, table_of
+from app.keypoint_files.keypoint_people import name_points, table_of, tell_track
 from app.keypoint_files.keypoint_table import (
     MOST_PEOPLE,
     Facts,
@@ -184,7 +184,7 @@ def _choose_person(
     followed = np.full(len(times), -1)
     followed[at[ordered[name]]] = ordered[name]
     seen = np.asarray(np.isfinite(xy).all(axis=2)).any(axis=1)
-    notes = (f"of {len(ordered)} people track {name!r} stands out most and is followed",)
+    notes = tell_track(len(ordered), name)
     return followed, times, Facts(people=np.bincount(at[seen], minlength=len(times)), notes=notes)
 
 
