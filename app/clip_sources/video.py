@@ -65,10 +65,6 @@ class VideoSource(ClipSource):
             info = probe(file, options.limits, options.turn)
         return ClipFacts(info.width, info.height, info.duration, info.frames)
 
-    def shows_pictures(self, path: Path, options: ReadOptions) -> bool:
-        """Return True."""
-        return True
-
     def record(
         self, path: Path, options: ReadOptions, *, video: Path | None = None, **how: Unpack[Reading]
     ) -> RecordedClip:
