@@ -317,8 +317,6 @@ class FolderBatch:
 def _summarise(rows: Sequence[Row]) -> str:
     if rows[0]["take"] is None:
         return str(rows[0]["faults"])
-    return ", ".join(_summarise_take(row) for row in rows)
-
-
-def _summarise_take(row: Row) -> str:
-    return str(row["label"] or (f"{row['pair']}?" if row["pair"] else "rejected"))
+    return ", ".join(
+        str(row["label"] or (f"{row['pair']}?" if row["pair"] else "rejected")) for row in rows
+    )

@@ -103,10 +103,6 @@ class KeypointFileSource(ClipSource):
         require_encodable(*poses.frame_size)
         return ClipFacts(*poses.frame_size, poses.duration, len(poses))
 
-    def shows_pictures(self, path: Path, options: ReadOptions) -> bool:
-        """Return False."""
-        return False
-
     def record(
         self, path: Path, options: ReadOptions, *, video: Path | None = None, **how: Unpack[Reading]
     ) -> RecordedClip:

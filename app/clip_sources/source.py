@@ -227,7 +227,11 @@ class ClipSource(Protocol):
         """
 
     def shows_pictures(self, path: Path, options: ReadOptions) -> bool:
-        """Return whether landmarks are found in pictures; else the file holds keypoints."""
+        """Return whether landmarks are found in pictures; else the file holds keypoints.
+
+        By default they are wherever files of this kind may hold pictures.
+        """
+        return self.has_pictures
 
     def record(
         self, path: Path, options: ReadOptions, *, video: Path | None = None, **how: Unpack[Reading]

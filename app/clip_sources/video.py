@@ -22,7 +22,7 @@ from app.clip_sources.source import (
 from app.recognition.errors import OsgError
 from app.recognition.estimation.factory import finds_hands
 from app.recognition.recording.chapters import chapters_in, join_chapters
-from app.recognition.recording.file_kinds import HEAD_BYTES, video_type
+from app.recognition.recording.file_kinds import read_head, video_type
 from app.recognition.recording.video import FrameReader, probe
 
 
@@ -43,10 +43,7 @@ class VideoSource(ClipSource):
 
     def accepts(self, path: Path, topic: str | None = None) -> bool:
         """Return whether the first bytes of a file are those of a video."""
-        if topic is not None or not path.is_file():
-            return False
-        with path.open("rb") as file:
-            return video_type(file.read(HEAD_BYTES)) is not None
+        return topic is None and path.is_file() and video_type(read_head(path)) is not None
 
     def accepts_upload(self, head: bytes, name: str) -> bool:
         """Return whether `head` is the beginning of a video."""
@@ -67,10 +64,6 @@ class VideoSource(ClipSource):
         with _one_file(path) as file:
             info = probe(file, options.limits, options.turn)
         return ClipFacts(info.width, info.height, info.duration, info.frames)
-
-    def shows_pictures(self, path: Path, options: ReadOptions) -> bool:
-        """Return True."""
-        return True
 
     def record(
         self, path: Path, options: ReadOptions, *, video: Path | None = None, **how: Unpack[Reading]

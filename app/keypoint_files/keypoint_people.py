@@ -67,7 +67,7 @@ class Person:
     @property
     def xy(self) -> FloatArray:
         """``(N, 2)``; NaN: not seen."""
-        return mask_unseen(self.points[:, :2], visibility_of(self.points), 0.0)
+        return mask_unseen(self.points[:, :2], visibility_of(self.points))
 
     @property
     def score(self) -> float:
@@ -201,7 +201,7 @@ def table_of(
     confidence = visibility_of(points[:, kept]) if known else None
     return KeypointTable(
         names=tuple(name for name in kind.landmarks if name is not None),
-        xy=mask_unseen(points[:, kept, :2], confidence, 0.0),
+        xy=mask_unseen(points[:, kept, :2], confidence),
         confidence=confidence,
         times=times,
         hands=hands,
@@ -238,7 +238,7 @@ def _agrees(kind: KeypointSet, points: FloatArray) -> bool | None:
     A face is small, the neck is between the shoulders, the middle of the hips
     between these, and hands begin at their wrists.
     """
-    xy = mask_unseen(points[..., :2], visibility_of(points), 0.0)
+    xy = mask_unseen(points[..., :2], visibility_of(points))
     place = {name: at for at, name in enumerate(kind.landmarks) if name}
     xy = xy[2 * np.isfinite(xy[:, list(place.values()), 0]).sum(axis=1) > len(place)]
     if not len(xy):
@@ -332,6 +332,12 @@ def _choose_person(
         for persons, place in zip(seen, choice.index, strict=True)
     ]
     return followed, choice
+
+
+def tell_track(count: int, name: str) -> tuple[str, ...]:
+    """Return a note on the track that is followed, if there are several."""
+    followed = f"of {count} people track {name!r} stands out most and is followed"
+    return (followed,) if count > 1 else ()
 
 
 def frame_number(name: str) -> int | None:

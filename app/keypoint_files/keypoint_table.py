@@ -263,8 +263,8 @@ class KeypointTable:
         )
 
 
-def mask_unseen(xy: FloatArray, confidence: FloatArray | None, least: float) -> FloatArray:
-    """Return keypoints ``(..., 2)`` with NaN for those below the `least` confidence.
+def mask_unseen(xy: FloatArray, confidence: FloatArray | None) -> FloatArray:
+    """Return keypoints ``(..., 2)`` with NaN for those without confidence.
 
     A keypoint at exactly 0, 0 or -1, -1 is none, as at any other number below 0 for both: many
     programs write an unseen one so.
@@ -273,7 +273,6 @@ def mask_unseen(xy: FloatArray, confidence: FloatArray | None, least: float) -> 
         (xy > 0).any(axis=-1) | (xy[..., 0] != xy[..., 1])
     )
     if confidence is not None:
-        known &= confidence >= least
         known &= confidence > 0
     return np.where(known[..., None], xy, np.nan)
 
@@ -305,7 +304,7 @@ def hands_of(points: FloatArray, sides: Sequence[Side]) -> tuple[tuple[Hand, ...
     """
     groups = points.reshape(len(points), len(sides), len(HAND_LANDMARKS), 3)
     scores = visibility_of(groups)
-    xy = mask_unseen(groups[..., :2], scores, 0.0)
+    xy = mask_unseen(groups[..., :2], scores)
     seen = np.isfinite(xy).all(axis=(2, 3)) & (np.ptp(xy, axis=2) > 0).any(axis=2)
     if not seen.any():
         return None

@@ -25,7 +25,7 @@ from app.keypoint_files.column_names import (
     plain,
     time_column,
 )
-from app.keypoint_files.keypoint_people import name_points, table_of
+from app.keypoint_files.keypoint_people import name_points, table_of, tell_track
 from app.keypoint_files.keypoint_table import (
     MOST_PEOPLE,
     Facts,
@@ -65,7 +65,9 @@ def read_mediapipe_table(
         headings = next(csv.reader([heading], delimiter=separator, skipinitialspace=True), [])
         # Where a comma separates nothing, it is a decimal one.
         rows = csv.reader(file, delimiter=separator, skipinitialspace=True)
-        points = rows if separator == "," else ([_point(cell) for cell in row] for row in rows)
+        points = (
+            rows if separator == "," else ([cell.replace(",", ".") for cell in row] for row in rows)
+        )
         lines = _whole(points, len(headings), path)
         plainly = [plain(heading) for heading in headings]
         if any(name in plainly for name in NAMES) and {"x", "y"} <= set(plainly):
@@ -86,10 +88,6 @@ def find_encoding(path: Path) -> str:
     """Return the encoding of a table: UTF-8, or UTF-16 by its byte-order mark, as Excel writes."""
     with path.open("rb") as file:
         return "utf-16" if is_utf16(file.read(2)) else "utf-8-sig"
-
-
-def _point(cell: str) -> str:
-    return cell.replace(",", ".")
 
 
 def times_of(values: FloatArray, unit: str) -> Times:
@@ -177,7 +175,7 @@ def _choose_person(
                 "person's track by its own name"
             )
     confidence = visibility_of(points)
-    xy = mask_unseen(points[..., :2], confidence, 0.0)
+    xy = mask_unseen(points[..., :2], confidence)
     # The rows of a track follow each other in time, as its movement is measured.
     ordered = {name: sorted(rows, key=lambda row: at[row]) for name, rows in by_name.items()}
     name = max(
@@ -186,7 +184,7 @@ def _choose_person(
     followed = np.full(len(times), -1)
     followed[at[ordered[name]]] = ordered[name]
     seen = np.asarray(np.isfinite(xy).all(axis=2)).any(axis=1)
-    notes = (f"of {len(ordered)} people track {name!r} stands out most and is followed",)
+    notes = tell_track(len(ordered), name)
     return followed, times, Facts(people=np.bincount(at[seen], minlength=len(times)), notes=notes)
 
 

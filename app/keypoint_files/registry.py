@@ -15,7 +15,7 @@ from app.keypoint_files.openpose import OPENPOSE, is_openpose
 from app.keypoint_files.pose_format import POSE_FORMAT
 from app.keypoint_files.sleap import SLEAP
 from app.recognition.errors import KeypointFileError
-from app.recognition.recording.file_kinds import HEAD_BYTES, find_file_kind
+from app.recognition.recording.file_kinds import find_file_kind, read_head
 
 FORMATS: Final = (DEEPLABCUT, MEDIAPIPE_TABLE, MEDIAPIPE_JSON, SLEAP, POSE_FORMAT)
 """Formats of single files. Of several with one ending the first that recognises a file reads it;
@@ -62,8 +62,7 @@ def find_format(path: Path) -> KeypointFormat:
             f"{path.name} is no keypoint file by its ending; there are: "
             f"{', '.join(FILE_ENDINGS)}, and folders of OpenPose"
         )
-    with path.open("rb") as file:
-        head = file.read(HEAD_BYTES)
+    head = read_head(path)
     if (kind := find_file_kind(head)) is not None:
         raise KeypointFileError(f"{path} is {kind.name} and no keypoint file; {kind.remedy}")
     return next((each for each in named if each.recognises(head, path.name)), named[-1])

@@ -10,7 +10,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from app.keypoint_files.keypoint_people import Person, table_of_people
+from app.keypoint_files.keypoint_people import Person, table_of_people, tell_track
 from app.keypoint_files.keypoint_table import (
     MALFORMED,
     MOST_PEOPLE,
@@ -69,7 +69,7 @@ def _table(labels: Any, path: Path, options: KeypointOptions, limits: VideoLimit
     times = Times(frames, counted=True)
     facts = Facts(frame_size=_size(labels), notes=())
     if tracks:
-        facts["notes"] = _tell_track(len(tracks), track.name)
+        facts["notes"] = tell_track(len(tracks), track.name)
         facts["people"] = np.array([_count_tracks(frame) for frame in labelled])
     if len(labels.videos) > 1:
         facts["notes"] += (f"the file holds {len(labels.videos)} videos; the first is read",)
@@ -115,9 +115,9 @@ def _table_without_scores(file: Any) -> KeypointTable:
     name = named[chosen] if chosen < len(named) else str(chosen)
     return KeypointTable(
         names=names,
-        xy=mask_unseen(xy[chosen], None, 0.0),
+        xy=mask_unseen(xy[chosen], None),
         times=Times(np.arange(xy.shape[1], dtype=np.float64), counted=True),
-        notes=_tell_track(len(xy), name),
+        notes=tell_track(len(xy), name),
         people=np.asarray(np.isfinite(xy).all(axis=3)).any(axis=2).sum(axis=0, dtype=np.int64),
     )
 
@@ -180,11 +180,6 @@ def _size(labels: Any) -> tuple[int, int] | None:
     if shape is None or not shape[1] or not shape[2]:
         return None
     return int(shape[2]), int(shape[1])
-
-
-def _tell_track(count: int, name: str) -> tuple[str, ...]:
-    followed = f"of {count} people track {name!r} stands out most and is followed"
-    return (followed,) if count > 1 else ()
 
 
 SLEAP: Final = KeypointFormat(

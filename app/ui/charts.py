@@ -378,7 +378,7 @@ def mark_direction(image: BinaryImage, trajectory: Trajectory | None) -> RgbImag
         return marked
     colour = parse_colour(load_palette().dark[_COLOUR])
     for path in _pixel_paths(trajectory):
-        lengths = np.concatenate([[0.0], np.hypot(*np.diff(path, axis=0).T).cumsum()])
+        lengths = measure_lengths(path)
         if lengths[-1] >= SHORTEST:
             _draw_arrow(marked, path, lengths, colour)
             start = (round(float(path[0, 0])), round(float(path[0, 1])))
@@ -395,30 +395,55 @@ def mark_gesture(gesture: Gesture) -> RgbImage:
 
 def _pixel_paths(trajectory: Trajectory) -> list[FloatArray]:
     """Return each landmark's path in pixels of the image, without gaps; see `draw`."""
-    known = np.asarray(np.isfinite(trajectory.xy).all(axis=2))
-    seen = trajectory.xy[known]
+    seen = trajectory.xy[np.isfinite(trajectory.xy).all(axis=2)]
     extent = float(np.ptp(seen, axis=0).max()) if len(seen) else 0.0
     if extent == 0:
         return []
     middle = (seen.min(axis=0) + seen.max(axis=0)) / 2
-    pixels = (trajectory.xy - middle) * ((SIZE - 1 - 2 * MARGIN) / extent) + (SIZE - 1) / 2
-    return [pixels[known[:, i], i] for i in range(pixels.shape[1]) if known[:, i].sum() > 1]
+    scale = (SIZE - 1 - 2 * MARGIN) / extent
+    return [(path - middle) * scale + (SIZE - 1) / 2 for _, path in list_seen_paths(trajectory)]
 
 
 def _draw_arrow(marked: RgbImage, path: FloatArray, lengths: FloatArray, colour: Rgb) -> None:
     """Draw an arrow head that points along the path."""
     at = ARROW_SHARE * lengths[-1]
-    reach = min(ARROW_LENGTH / 2, at, lengths[-1] - at)
-    tail, tip = (
+    tail, tip = find_chord(path, lengths, at, min(ARROW_LENGTH / 2, at, lengths[-1] - at))
+    if (tip != tail).any():
+        corners = list_arrow_corners(tip, tip - tail, ARROW_LENGTH, ARROW_LENGTH / 2, 4)
+        cv2.fillPoly(marked, [np.rint(corners).astype(np.int32)], colour, cv2.LINE_AA)
+
+
+def list_seen_paths(trajectory: Trajectory) -> list[tuple[str, FloatArray]]:
+    """Return the name and the path without gaps of each landmark that is seen more than once."""
+    known = np.asarray(np.isfinite(trajectory.xy).all(axis=2))
+    return [
+        (name, trajectory.xy[known[:, row], row])
+        for row, name in enumerate(trajectory.landmarks)
+        if known[:, row].sum() > 1
+    ]
+
+
+def measure_lengths(path: FloatArray) -> FloatArray:
+    """Return the length of a path ``(N, 2)`` up to each of its points."""
+    return np.concatenate([[0.0], np.hypot(*np.diff(path, axis=0).T).cumsum()])
+
+
+def find_chord(
+    path: FloatArray, lengths: FloatArray, at: float, reach: float
+) -> tuple[FloatArray, FloatArray]:
+    """Return the points of a path that lie `reach` before and after the length `at`."""
+    before, after = (
         np.array([np.interp(place, lengths, path[:, axis]) for axis in (0, 1)])
         for place in (at - reach, at + reach)
     )
-    along = tip - tail
-    size = float(np.hypot(*along))
-    if size == 0:
-        return
-    along = along / size
-    across = np.array([-along[1], along[0]])
-    base = tip - along * ARROW_LENGTH
-    corners = [tip + along * 4, base + across * ARROW_LENGTH / 2, base - across * ARROW_LENGTH / 2]
-    cv2.fillPoly(marked, [np.rint(corners).astype(np.int32)], colour, cv2.LINE_AA)
+    return before, after
+
+
+def list_arrow_corners(
+    tip: FloatArray, along: FloatArray, length: float, half_width: float, beyond: float
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Return the corners of an arrow head that points along a vector, the first `beyond` `tip`."""
+    along = along / float(np.hypot(*along))
+    across = np.array([-along[1], along[0]]) * half_width
+    base = tip - along * length
+    return tip + along * beyond, base + across, base - across

@@ -8,21 +8,17 @@ from collections.abc import Iterator
 from html import escape
 from typing import Any, Final
 
-import numpy as np
-import numpy.typing as npt
-
-from app.recognition import PoseError, PoseSequence, Recognition
+from app.recognition import Recognition
 from app.recognition.explanation.explanation import Explanation
+from app.recognition.poses.frame import pose_in
 from app.recognition.poses.landmarks import SKELETON
-from app.recognition.poses.trajectory import Trajectory
-from app.recognition.preprocessing.salience import find_salient_landmarks
 from app.recognition.recording.video import read_frames
 from app.recognition.text.wording import ask_which
 from app.resources import static_dir
 from app.ui import charts
 from app.ui.palette import read_tokens
 from app.ui.panel_style import alias_chart_colours
-from app.ui.workspace import Range, WorkspaceView, compared_images
+from app.ui.workspace import Range, WorkspaceView, compared_images, find_salient_motion
 
 MAX_WIDTH = 400
 """Width of a picture in the file, in pixels."""
@@ -32,9 +28,6 @@ MAX_PICTURES = 120
 
 JPEG_QUALITY = 72
 """JPEG quality that keeps the file near 2 MB, small enough for an e-mail; at 82 it is 3 MB."""
-
-DIGITS = 4
-"""Decimals of landmark coordinates as fractions of the picture: a tenth of a pixel."""
 
 POLICY: Final = (
     "default-src 'none'; img-src data:; style-src 'unsafe-inline'; script-src 'unsafe-inline'"
@@ -134,9 +127,9 @@ def _recording(view: WorkspaceView, shown: Range) -> dict[str, Any]:
         "frames": [url for url, _ in pictures],
         "size": pictures[0][1] if pictures else list(poses.frame_size),
         "times": [round(float(poses.time[index]), 3) for index in chosen],
-        "poses": [_fractions(poses.xy[index], poses.frame_size) for index in chosen],
+        "poses": [pose_in(poses.xy[index], *poses.frame_size) for index in chosen],
         "bones": [[names[a], names[b]] for a, b in SKELETON if a in names and b in names],
-        "trails": [names[name] for name in _salient(poses)],
+        "trails": [names[name] for name in find_salient_motion(poses)[1]],
     }
 
 
@@ -150,19 +143,3 @@ def _pictures(view: WorkspaceView, kept: range) -> Iterator[tuple[str, list[int]
                 small = charts.shrink(frame.image, MAX_WIDTH)
                 encoded = base64.b64encode(charts.encode_jpeg(small, JPEG_QUALITY)).decode("ascii")
                 yield "data:image/jpeg;base64," + encoded, [small.shape[1], small.shape[0]]
-
-
-def _fractions(
-    xy: npt.NDArray[np.float64], frame_size: tuple[int, int]
-) -> list[list[float] | None]:
-    fractions = np.round(xy / frame_size, DIGITS)
-    return [
-        [float(x), float(y)] if np.isfinite([x, y]).all() else None for x, y in fractions.tolist()
-    ]
-
-
-def _salient(poses: PoseSequence) -> tuple[str, ...]:
-    try:
-        return find_salient_landmarks(Trajectory.from_poses(poses))
-    except PoseError:
-        return ()

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import secrets
 import time as clock
-from collections.abc import Collection
 from dataclasses import dataclass
 from pathlib import Path
 from threading import Lock
@@ -61,8 +60,6 @@ class WorkspaceView:
         The expected label, if known; empty: none of the gestures.
     language
         The revision used for the recognition, for its gestures' images.
-    salient
-        Landmarks whose trails are drawn; None: those that move.
 
     """
 
@@ -74,7 +71,6 @@ class WorkspaceView:
     recognition: Recognition | None = None
     expected: str | None = None
     language: Language | None = None
-    salient: tuple[str, ...] | None = None
 
     @property
     def trigger(self) -> Trigger:
@@ -304,7 +300,7 @@ class Workspace:
     def _draw_scene(self, view: WorkspaceView, shown: Range) -> Trajectory | None:
         """Draw the cube, and return the salient landmarks' trajectory that it shows."""
         cube = CubeGeometry.from_poses(shown.poses)
-        trajectory, salient = _salient_motion(view, shown.poses)
+        trajectory, salient = find_salient_motion(shown.poses)
         wall = None
         if trajectory is not None and not (drawing := draw(trajectory)).empty:
             wall = Wall.from_drawing(cube, shown.poses, salient, drawing)
@@ -345,15 +341,13 @@ def initial_frame(frames: int) -> int:
     return round(INITIAL_SHARE * (frames - 1))
 
 
-def _salient_motion(
-    view: WorkspaceView, poses: PoseSequence
-) -> tuple[Trajectory | None, tuple[str, ...]]:
+def find_salient_motion(poses: PoseSequence) -> tuple[Trajectory | None, tuple[str, ...]]:
     """Return the salient landmarks' trajectory and names; None and no names if nothing moves."""
     try:
         trajectory = Trajectory.from_poses(poses)
     except PoseError:
         return None, ()
-    names = find_salient_landmarks(trajectory) if view.salient is None else view.salient
+    names = find_salient_landmarks(trajectory)
     return (trajectory.select(names), names) if names else (None, ())
 
 
@@ -375,13 +369,12 @@ def compared_images(
         captions = {expected: f"{expected} (expected)", **captions}
     shown = [(caption, known[label]) for label, caption in captions.items() if label in known]
     sets = dict.fromkeys(gesture.salient for _, gesture in shown)
-    takes = [(_take_caption(names, sets), _drawn(poses, names)) for names in sets]
-    images = [(caption, image) for caption, image in takes if image is not None]
+    images = []
+    for names in sets:
+        caption = f"this take, {', '.join(map(humanize, names))}" if len(sets) > 1 else "this take"
+        if (image := _drawn(poses, names)) is not None:
+            images.append((caption, image))
     return images + [(caption, mark_gesture(gesture)) for caption, gesture in shown]
-
-
-def _take_caption(names: tuple[str, ...], sets: Collection[tuple[str, ...]]) -> str:
-    return "this take" if len(sets) == 1 else f"this take, {', '.join(map(humanize, names))}"
 
 
 def _drawn(poses: PoseSequence, names: tuple[str, ...]) -> npt.NDArray[np.uint8] | None:
@@ -402,7 +395,7 @@ def _drawn(poses: PoseSequence, names: tuple[str, ...]) -> npt.NDArray[np.uint8]
 
 def _frames_of(view: WorkspaceView) -> tuple[object, ...]:
     """Return the values of a view that determine the frames, trails and curves shown."""
-    return view.video, view.start, view.end, view.salient, view.trigger
+    return view.video, view.start, view.end, view.trigger
 
 
 def _clip_of(view: WorkspaceView) -> tuple[Path, int]:

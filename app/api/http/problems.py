@@ -206,7 +206,15 @@ def _convert_store_error(error: store.StoreError) -> ProblemError:
                 current_revision=error.current,
             )
         case store.QuotaExceeded():
-            return _convert_quota(error)
+            return ProblemError(
+                413 if error.alone else 507,  # Alone: no deletion helps.
+                "quota_exceeded",
+                str(error),
+                # The rest of a body stays unread, so the connection cannot be used again.
+                headers={"Connection": "close"},
+                used={"clips": error.usage.clips, "bytes": error.usage.bytes},
+                limit=error.limit,
+            )
         case store.TooManyInvitations():
             return ProblemError(409, "too_many_invitations", str(error))
         case store.TestSetFull():
@@ -219,18 +227,6 @@ def _convert_store_error(error: store.StoreError) -> ProblemError:
             )
     headers = {"Retry-After": RETRY_SECONDS}
     return ProblemError(503, "store_unavailable", str(error), headers=headers)
-
-
-def _convert_quota(error: store.QuotaExceeded) -> ProblemError:
-    return ProblemError(
-        413 if error.alone else 507,  # Alone: no deletion helps.
-        "quota_exceeded",
-        str(error),
-        # The rest of a body stays unread, so the connection cannot be used again.
-        headers={"Connection": "close"},
-        used={"clips": error.usage.clips, "bytes": error.usage.bytes},
-        limit=error.limit,
-    )
 
 
 def _convert_recognition_error(error: OsgError) -> ProblemError:

@@ -22,7 +22,7 @@ from app.api.workers.tasks import Join
 from app.api.workers.worker_messages import Failed, Probed
 from app.api.workers.worker_processes import Workers
 from app.clip_sources import ReadOptions, sources_of_upload, supported_kinds
-from app.recognition.recording.file_kinds import HEAD_BYTES, find_file_kind
+from app.recognition.recording.file_kinds import find_file_kind, read_head
 from app.store import Clip, Quota, QuotaStore, Upload
 
 UNSUPPORTED, STORAGE_UNAVAILABLE = "unsupported_media_type", "storage_unavailable"
@@ -148,7 +148,7 @@ async def inspect(
         raise ProblemError(422, "video_unreadable", f"{name} is empty; record or export it again")
     given = fields or UploadFields()
     wanted = given.options.model_copy(update={"one_take": one_take})
-    head = await run_in_threadpool(_head, partial)
+    head = await run_in_threadpool(read_head, partial)
     candidates = sources_of_upload(head, name)
     for source in candidates:
         if given.topic is not None and not source.has_topics:
@@ -243,11 +243,6 @@ def _facts(name: str, options: ReadOptions, probed: Probed) -> dict[str, Any]:
 def _refusal(probed: Failed, name: str) -> ProblemError:
     status = {UNSUPPORTED: 415, STORAGE_UNAVAILABLE: 503}.get(probed.code, 422)
     return ProblemError(status, probed.code, f"{name}: {probed.detail}")
-
-
-def _head(path: Path) -> bytes:
-    with path.open("rb") as file:
-        return file.read(HEAD_BYTES)
 
 
 def quota_of(request: Request) -> Quota:

@@ -13,12 +13,11 @@ import av
 import numpy as np
 from pydantic import BaseModel
 
-from app.api.workers.worker_messages import Pose, pose_in
 from app.recognition import OsgError, PoseSequence, Recognition, Recognizer, Take
 from app.recognition.errors import VideoError
 from app.recognition.estimation.estimator import PoseEstimator
 from app.recognition.estimation.water import WaterCorrection, WaterSight
-from app.recognition.poses.frame import Image
+from app.recognition.poses.frame import Image, Pose, pose_in
 from app.recognition.recording.extraction import build_frame_sequence
 from app.recognition.recording.live_segmentation import LiveTakes, PeopleInStream, Sight
 from app.recognition.recording.segmentation import TakeState

@@ -31,7 +31,6 @@ from app.api.workers.worker_messages import (
     Probed,
     Progressed,
     RecognizedTake,
-    pose_in,
 )
 from app.bags.export_writer import NamedRecognition, write_bag
 from app.clip_sources import (
@@ -48,7 +47,7 @@ from app.recognition.health.check import check_health
 from app.recognition.language.export_format import from_reference, is_reference
 from app.recognition.language.file_schema import TriggerEntry, entry_to_trigger
 from app.recognition.language.requirements import require_seen_landmarks
-from app.recognition.poses.frame import Body, FrameLandmarks
+from app.recognition.poses.frame import Body, FrameLandmarks, pose_in
 from app.recognition.recording.chapters import join_chapters
 from app.recognition.recording.clip_range import find_clip_range
 from app.recognition.recording.video import VideoFrame, read_frames

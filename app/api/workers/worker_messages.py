@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import Annotated, Any, Literal
 
 from pydantic import AfterValidator, Base64Bytes, BaseModel, ConfigDict, Field, TypeAdapter
 
+from app.recognition.poses.frame import Pose
 from app.recognition.text.described import DESCRIBED
-
-if TYPE_CHECKING:
-    from app.recognition.poses.sequence import FloatArray
 
 Count = Annotated[int, Field(ge=0, lt=2**31)]
 """A number that every database can keep."""
@@ -33,19 +30,11 @@ def _require_jpeg(picture: bytes) -> bytes:
 Picture = Annotated[Base64Bytes, AfterValidator(_require_jpeg)]
 """A small JPEG, in base64."""
 
-Pose = tuple[tuple[float, float] | None, ...]
-"""A body in one frame, for drawing: x (right) and y (down) of each of `POSE_LANDMARKS`, as
-fractions of the upright picture's width and height; outside 0 to 1 beyond the picture's edge, None
-if not seen."""
-
 PART_CHARACTERS = 15_000
 """Most characters in a line, each of up to four bytes: asyncio reads lines of at most 64 KiB."""
 
 MORE, LAST = b"+", b"="
 """Beginnings of the lines of a message in parts; every other line is a whole message."""
-
-POSE_DIGITS = 4
-"""Digits of a pose's fractions: a tenth of a pixel in a picture 1000 wide."""
 
 
 class _Said(BaseModel):
@@ -178,16 +167,6 @@ class Failed(_Said):
 Message = Probed | Progressed | Answered | Finished | Failed
 
 _MESSAGE: TypeAdapter[Message] = TypeAdapter(Annotated[Message, Field(discriminator="kind")])
-
-
-def pose_in(xy: FloatArray, width: int, height: int) -> Pose:
-    """Return landmarks ``(K, 2)`` in pixels as fractions of a picture of `width` x `height`."""
-    return tuple(
-        (round(x / width, POSE_DIGITS), round(y / height, POSE_DIGITS))
-        if math.isfinite(x) and math.isfinite(y)
-        else None
-        for x, y in xy.tolist()
-    )
 
 
 def dump(message: Message) -> Iterator[str]:

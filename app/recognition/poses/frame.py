@@ -5,6 +5,7 @@ Hand shapes: the landmarks of a held hand, without its place and size.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Final, Literal, TypeAlias
@@ -103,6 +104,25 @@ class FrameLandmarks:
     def bodies(self) -> tuple[Body, ...]:
         """All bodies in the frame, the followed one first."""
         return (() if self.body is None else (self.body,)) + self.others
+
+
+Pose: TypeAlias = tuple[tuple[float, float] | None, ...]
+"""A body in one frame, for drawing: x (right) and y (down) of each of `POSE_LANDMARKS`, as
+fractions of the upright picture's width and height; outside 0 to 1 beyond the picture's edge, None
+if not seen."""
+
+POSE_DIGITS = 4
+"""Digits of a pose's fractions: a tenth of a pixel in a picture 1000 wide."""
+
+
+def pose_in(xy: FloatArray, width: int, height: int) -> Pose:
+    """Return landmarks ``(K, 2)`` in pixels as fractions of a picture of `width` x `height`."""
+    return tuple(
+        (round(x / width, POSE_DIGITS), round(y / height, POSE_DIGITS))
+        if math.isfinite(x) and math.isfinite(y)
+        else None
+        for x, y in xy.tolist()
+    )
 
 
 DIGITS = 3

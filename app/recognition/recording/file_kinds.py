@@ -138,11 +138,23 @@ def _is_transport_stream(head: bytes) -> bool:
     return False
 
 
+def read_head(path: Path) -> bytes:
+    """Return the first `HEAD_BYTES` of a file.
+
+    Raises
+    ------
+    OSError
+        When it cannot be read.
+
+    """
+    with path.open("rb") as file:
+        return file.read(HEAD_BYTES)
+
+
 def describe_unreadable(path: Path) -> str:
     """Return, in a sentence, why a file cannot be read as a video, and what to do."""
     try:
-        with path.open("rb") as file:
-            head = file.read(HEAD_BYTES)
+        head = read_head(path)
     except OSError as error:
         return f"{path.name} cannot be read ({error.strerror}); check the path"
     kind = find_file_kind(head)

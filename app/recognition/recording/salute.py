@@ -11,6 +11,7 @@ import cmath
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass, field
+from functools import lru_cache
 from itertools import pairwise
 from operator import itemgetter
 
@@ -268,7 +269,13 @@ def _wide_salute(shape: _HandShape) -> float:
 
 def best_salute(hands: Iterable[Hand]) -> float:
     """Return the score of the hand that salutes most, left or right; 0 without a hand."""
-    return max((salute_score(hand.xy) for hand in hands), default=0.0)
+    return max(map(_score_hand, hands), default=0.0)
+
+
+@lru_cache(maxsize=32)
+def _score_hand(hand: Hand) -> float:
+    # Kept for the hands of the last frames: the choice of the person and the trigger ask for it.
+    return salute_score(hand.xy)
 
 
 @dataclass
@@ -283,11 +290,9 @@ class HeldTrigger:
     Attributes
     ----------
     hold
-        Seconds of salute until it counts.
-    dropout
-        Seconds without salute until it is over.
-    enter, leave
-        Scores from which it begins, and down to which it continues.
+        Seconds of salute until it counts; `DROPOUT_SECONDS` without end it.
+    leave
+        Score down to which it continues, begun at `ENTER_SCORE`.
     held
         Whether a salute counts now.
     since, until
@@ -297,8 +302,6 @@ class HeldTrigger:
     """
 
     hold: float = HOLD_SECONDS
-    dropout: float = DROPOUT_SECONDS
-    enter: float = ENTER_SCORE
     leave: float = LEAVE_SCORE
     held: bool = field(default=False, init=False)
     since: float | None = field(default=None, init=False)
@@ -326,12 +329,12 @@ class HeldTrigger:
         if previous is not None:
             before, score_before = previous
             seen = time - before < REACHES
-            if seen and min(score_before, score) >= (self.leave if active else self.enter):
+            if seen and min(score_before, score) >= (self.leave if active else ENTER_SCORE):
                 if not active:
                     self.since = before
                 self._collected += min(time - before, self.hold / 2)
                 self.until = time
-        if self.until is not None and time - self.until > self.dropout:
+        if self.until is not None and time - self.until > DROPOUT_SECONDS:
             self.held, self._collected = False, 0.0
         # The tolerance is for a sum of floats that misses `hold` by the last bit.
         elif self._collected >= self.hold - 1e-9:

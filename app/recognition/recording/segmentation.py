@@ -16,9 +16,9 @@ from app.recognition.poses.sequence import PoseSequence
 from app.recognition.preprocessing.repair import repair_poses
 from app.recognition.recording.extraction import Progress, record
 from app.recognition.recording.recording import Recording, find_holes, find_missable
+from app.recognition.recording.salute import ENTER_SCORE, HeldTrigger
 from app.recognition.recording.salute import LONGEST_TAKE as LONGEST_TAKE
 from app.recognition.recording.salute import SHORTEST_TAKE as SHORTEST_TAKE
-from app.recognition.recording.salute import HeldTrigger
 from app.recognition.recording.trimming import Span, find_stroke
 from app.recognition.triggers.trigger import LEAVE_SCORE as POSE_LEAVE_SCORE
 from app.recognition.triggers.trigger import POSE_SECONDS, SALUTE, Trigger
@@ -76,8 +76,8 @@ class TakeMachine:
     Idle until a trigger is held; then recording. The take begins when this trigger is released and
     ends where the next one begins. Then done, until that trigger is released too: one trigger never
     ends one take and begins the next.
-    A trigger that returns within `shortest` seconds of its release continues. A take longer than
-    `longest` seconds ends unclosed.
+    A trigger that returns within `SHORTEST_TAKE` of its release continues. A take longer than
+    `LONGEST_TAKE` ends unclosed.
 
     Where start and stop triggers differ, each has its own effect: a start trigger during a take
     leaves that take unclosed and begins the next; a stop trigger without a take does nothing.
@@ -88,8 +88,6 @@ class TakeMachine:
         Detects held triggers.
     stop
         Detects the stop trigger; None: the start trigger also ends a take.
-    shortest, longest
-        Least and most seconds of a take.
     state
         Current state.
     gap
@@ -100,8 +98,6 @@ class TakeMachine:
 
     trigger: HeldTrigger = field(default_factory=HeldTrigger)
     stop: HeldTrigger | None = None
-    shortest: float = SHORTEST_TAKE
-    longest: float = LONGEST_TAKE
     state: TakeState = field(default=TakeState.idle, init=False)
     _began: float = field(default=0.0, init=False)
     _released: float | None = field(default=None, init=False)
@@ -142,9 +138,9 @@ class TakeMachine:
         """
         held = self.trigger.update(time, score)
         self.gap = None
-        if max(score, stop_score) < self.trigger.enter:
+        if max(score, stop_score) < ENTER_SCORE:
             self._clear.append(time)
-        while self._clear and time - self._clear[0] > 2 * self.longest:
+        while self._clear and time - self._clear[0] > 2 * LONGEST_TAKE:
             self._clear.popleft()
         if self.stop is not None:
             return self._update_both(time, held, self.stop.update(time, stop_score))
@@ -168,7 +164,7 @@ class TakeMachine:
 
     def remembers(self, time: float) -> bool:
         """Return whether a gap that lasts at `time` seconds may still become a take."""
-        return self._ended is not None and time - self._ended.end <= self.longest
+        return self._ended is not None and time - self._ended.end <= LONGEST_TAKE
 
     def finish(self, time: float) -> Bracket | None:
         """End the stream at `time` seconds.
@@ -182,7 +178,7 @@ class TakeMachine:
         if self.state is not TakeState.recording or released is None:
             return None
         self.state = TakeState.idle
-        return self._unclosed(released, time) if time - released >= self.shortest else None
+        return self._unclosed(released, time) if time - released >= SHORTEST_TAKE else None
 
     def _update_both(self, time: float, held: bool, stopped: bool) -> Bracket | None:
         """Process a frame where start and stop triggers differ."""
@@ -199,7 +195,7 @@ class TakeMachine:
             if not held:
                 self._released = self.trigger.until
         elif self.state is TakeState.recording and self._released is not None and begun is not None:
-            if begun - self._released >= self.shortest:
+            if begun - self._released >= SHORTEST_TAKE:
                 found = self._unclosed(self._released, begun)
                 self._began = begun
             self._released = None
@@ -213,7 +209,7 @@ class TakeMachine:
         assert released is not None
         if stopped and since is not None:
             ended = self._end(released, since, time)
-            return ended if since - released >= self.shortest else None
+            return ended if since - released >= SHORTEST_TAKE else None
         return None if self._released is None else self._end_too_long(released, time)
 
     def _recording(self, time: float, held: bool) -> Bracket | None:
@@ -224,7 +220,7 @@ class TakeMachine:
             return None
         if not held or since is None:
             return self._end_too_long(released, time)
-        if since - released < self.shortest:
+        if since - released < SHORTEST_TAKE:
             self._released = None
             return None
         return self._end(released, since, time)
@@ -236,14 +232,14 @@ class TakeMachine:
 
     def _end_too_long(self, released: float, time: float) -> Bracket | None:
         """End the take without a trigger, if it lasts longer than a take may."""
-        if time - released <= self.longest:
+        if time - released <= LONGEST_TAKE:
             return None
         self.state = TakeState.idle
-        return self._unclosed(released, released + self.longest)
+        return self._unclosed(released, released + LONGEST_TAKE)
 
     def _find_gap(self, time: float) -> Bracket | None:
         ended, self._ended = self._ended, None
-        if ended is None or not self.shortest <= self._began - ended.end <= self.longest:
+        if ended is None or not SHORTEST_TAKE <= self._began - ended.end <= LONGEST_TAKE:
             return None
         return self._bracket(ended, Span(self._began, time), self._began)
 

@@ -231,17 +231,14 @@ def compare_gestures(old: Mapping[str, Any], new: Mapping[str, Any]) -> Iterator
         if label not in after:
             yield label, "removed"
         elif label not in before:
-            yield label, f"added{_describe_command(after[label].get('command'))}"
+            command = after[label].get("command")
+            yield label, "added" if command is None else f"added, command {command!r}"
         elif before[label] != after[label]:
             commands = [each[label].get("command") for each in (before, after)]
             if commands[0] != commands[1]:
                 yield label, f"command {commands[0]!r} becomes {commands[1]!r}"
             if {**before[label], "command": None} != {**after[label], "command": None}:
                 yield label, "is shown differently"
-
-
-def _describe_command(command: Any) -> str:
-    return "" if command is None else f", command {command!r}"
 
 
 def compare_tables(old: VehicleTable | None, new: VehicleTable) -> Iterator[str]:

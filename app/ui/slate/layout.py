@@ -19,6 +19,7 @@ from app.recognition.poses.landmarks import FINGERS, HAND_LANDMARKS
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.text.wording import humanize, join_words
 from app.recognition.triggers.trigger import ArmPose, Trigger
+from app.ui.charts import find_chord, list_arrow_corners, list_seen_paths, measure_lengths
 from app.ui.slate.primitives import Disc, Page, Part, Path, Point, Shape, Words, fit_size, wrap
 
 A4: Final = (210.0, 297.0)
@@ -279,7 +280,8 @@ def _figure(gesture: Gesture, left: float, top: float, side: float) -> Iterator[
     if gesture.is_held:
         yield from _hands(place_hands(*gesture.held_shapes), left, top, side)
         return
-    paths = _paths(gesture)
+    shown = gesture.trajectory
+    paths = [] if shown is None else list_seen_paths(shown.select(gesture.salient))
     if not paths:
         yield from _outline(gesture, left, top, side)
         return
@@ -325,22 +327,9 @@ def _outline(gesture: Gesture, left: float, top: float, side: float) -> Iterator
         yield Path((*points, points[0]), 0.012 * side)
 
 
-def _paths(gesture: Gesture) -> list[tuple[str, FloatArray]]:
-    """Return each salient landmark's path without gaps."""
-    if gesture.trajectory is None:
-        return []
-    chosen = gesture.trajectory.select(gesture.salient)
-    known = np.asarray(np.isfinite(chosen.xy).all(axis=2))
-    return [
-        (name, chosen.xy[known[:, row], row])
-        for row, name in enumerate(chosen.landmarks)
-        if known[:, row].sum() > 1
-    ]
-
-
 def _arrows(path: FloatArray, side: float) -> Iterator[Part]:
     """Yield arrow heads along a path."""
-    lengths = np.concatenate([[0.0], np.hypot(*np.diff(path, axis=0).T).cumsum()])
+    lengths = measure_lengths(path)
     size = 0.095 * side
     for share in ARROWS:
         tail, tip = max(
@@ -353,10 +342,7 @@ def _arrows(path: FloatArray, side: float) -> Iterator[Part]:
 
 def _arrow_head(tip: FloatArray, along: FloatArray, size: float) -> Shape:
     """Return the head of an arrow that points along a vector."""
-    along = along / float(np.hypot(*along))
-    across = np.array([-along[1], along[0]]) * 0.55 * size
-    back = tip - along * size
-    corners = (tip + along * 0.15 * size, back + across, back - across)
+    corners = list_arrow_corners(tip, along, size, 0.55 * size, 0.15 * size)
     return Shape(tuple((float(x), float(y)) for x, y in corners))
 
 
@@ -366,11 +352,7 @@ def _chord(
     """Return both ends of a piece of a path around a share of its length."""
     reach = 0.5 * size
     at = min(max(share * lengths[-1], reach), lengths[-1] - reach)
-    tail, tip = (
-        np.array([np.interp(at + shift, lengths, path[:, axis]) for axis in (0, 1)])
-        for shift in (-reach, reach)
-    )
-    return tail, tip
+    return find_chord(path, lengths, at, reach)
 
 
 def _start(name: str, at: FloatArray, side: float) -> Iterator[Part]:

@@ -24,10 +24,10 @@ from app.api.workers.worker_messages import (
     Progressed,
     dump,
     parse,
-    pose_in,
 )
 from app.api.workers.worker_processes import Workers
 from app.recognition import Recording
+from app.recognition.poses.frame import pose_in
 from app.settings import Limits, Settings
 from tests.api.workers.test_local_processes import order, record
 from tests.recognition.damaged_clips import write_clip

@@ -133,6 +133,15 @@ def test_the_best_hand_counts_whichever_side_and_size() -> None:
     assert best_salute(()) == 0
 
 
+def test_a_hand_that_is_asked_for_twice_has_the_same_score() -> None:
+    shown = labelled_hands(100, seed=7, noise=0.05)
+    hands = [Hand(xy=each.xy, side="left", score=0.9) for each in shown]
+    scores = [salute_score(hand.xy) for hand in hands]
+    for _ in range(2):
+        assert [best_salute((hand,)) for hand in hands] == scores
+        assert best_salute(hands) == max(scores)
+
+
 def held_since(*frames: tuple[float, float]) -> float | None:
     """Return the time at which a salute first counts."""
     trigger = HeldTrigger()

@@ -15,7 +15,8 @@ from app.api.events.broadcast import Event
 from app.api.http.problems import problem_responses
 from app.api.http.schemas.values import View
 from app.api.services.running_studio import CurrentStudio, Jobs, Runner, Studio
-from app.api.workers.worker_messages import Pose, Progress
+from app.api.workers.worker_messages import Progress
+from app.recognition.poses.frame import Pose
 from app.store import Job, JobStatus, NotFound
 
 EVENT_STREAM: dict[int | str, dict[str, Any]] = {
