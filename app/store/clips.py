@@ -314,6 +314,7 @@ class ClipStore(DatabaseStore):
         with self._database.writing() as session:
             clip = _load(session, clip_id)
             options = (clip.options or {}) | {"turn": (clip.turn + degrees) % 360}
+            # As at intake, defaults are left out; of the stored values only a default is false.
             clip.options = {name: each for name, each in options.items() if each}
             if degrees % 180:
                 clip.width, clip.height = clip.height, clip.width

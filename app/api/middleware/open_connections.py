@@ -215,6 +215,7 @@ class _Connection:
         return {"type": "websocket.disconnect", "code": POLICY_VIOLATION, "reason": ""}
 
     async def _send_until_ended(self, message: Message) -> None:
+        """Send a message, but refuse an answer not yet begun; that to a change is sent (`end`)."""
         if self._websocket:
             if self._ended_at is not None:
                 return  # It is closed when its route has ended.

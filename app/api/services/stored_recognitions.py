@@ -198,6 +198,7 @@ def try_gesture(
     """
     if trial is None:
         return None
+    # The answer names gestures as the language does: a new label is not tried.
     change = trial.change.model_copy(update={"label": None})
     shown = change.demonstration
     demonstration = None if shown is None else demonstration_at(clips, shown, language.trigger)

@@ -109,7 +109,9 @@ class Control:
 def run_with_uploads(
     run: Callable[[Callable[[], None]], bool], control: Control, page: StatusPage
 ) -> bool:
-    """Run until the source ends or a signal comes; what keeps a run from starting is tried again.
+    """Run until the source ends or a signal comes; begin again where an upload asks for it.
+
+    What keeps a run from starting is shown on the page, and tried again.
 
     Parameters
     ----------
@@ -136,10 +138,11 @@ def run_with_uploads(
             told = reason
             control.wait(RETRY_SECONDS)
             continue
+        # Else an upload ended the run: a file that is read only at its start, as a vehicle table.
         if not control.changed:
             return recognised
         told = ""
-    return True
+    return True  # A signal ended it.
 
 
 def run_robot(

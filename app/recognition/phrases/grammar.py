@@ -194,6 +194,7 @@ class Grammar:
             if isinstance(each, OneOf):
                 return replace(each, gestures=tuple(map(name, each.gestures)))
             if isinstance(each, Group):
+                # No group is dropped: a group contains none, which only the type checker is told.
                 members = [part(member) for member in each.parts]
                 return replace(each, parts=tuple(m for m in members if not isinstance(m, Group)))
             return each

@@ -324,6 +324,7 @@ def keep_person(found: FrameLandmarks, place: int | None) -> FrameLandmarks:
 def see_people(found: FrameLandmarks) -> tuple[tuple[SeenPerson, ...], float]:
     """Return the people of a frame with their salutes, and the salute of nobody's hands."""
     shared, stray = split_hands(found)
+    # An infinite place, as a user's own model may give, is not seen either.
     people = tuple(
         SeenPerson(np.where(np.isfinite(body.xy), body.xy, np.nan), body.score, best_salute(hands))
         for body, hands in zip(found.bodies, shared, strict=True)

@@ -294,7 +294,7 @@ class OrderDesk:
         return reason or ("no effect" if is_over and not is_shown else "")
 
     def _hear_proof(self, order: Order, message: Message, now: float) -> Outcome | None:
-        """Process what may prove or refuse the present step."""
+        """Process what may prove or refuse the present step; `_reported` has heard it already."""
         step = order.steps[self._position]
         if step.is_done(self._reported):
             return self._advance(order, now)
@@ -302,6 +302,7 @@ class OrderDesk:
             (message.get_srcComponent(), message.command) != (step.component, step.command)
         ):
             return None
+        # An accepted mode is not requested again until it has had `SHOW_SECONDS`, heard ones.
         self._watch.hear_acknowledgement(message.result, self._clock.seconds)
         if message.result in GO_ON:
             return None

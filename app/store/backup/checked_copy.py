@@ -54,7 +54,8 @@ AT_ONCE: Final = 100
 """Rows read and written at a time: the document of a language has up to 64 MB, most have 100 kB."""
 
 OF_A_SERVER: Final = (ChangeCount, SignIn, UploadReservation)
-"""Tables that belong to the running servers and not to the library."""
+"""Tables that belong to the running servers and not to the library: their rows are not copied. A
+file that is copied as it is (`archive`) loses the sign-ins."""
 
 
 OTHER_CLOCK: Final = timedelta(days=1)

@@ -1,4 +1,4 @@
-// The findings, the worst first, each with links to where it can be mended.
+// The findings in the order of the report, each with links to where it can be mended.
 
 import * as api from "../core/api.js";
 import { state, update } from "../core/state.js";

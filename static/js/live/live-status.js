@@ -1,4 +1,4 @@
-// The status of the live view in words: the salute, the take, the frame rate.
+// Draws the status of the live view; its words come from camera/take-steps.js.
 
 import { howTo, isSlow, situation } from "../camera/take-steps.js";
 import { SALUTE } from "../clips/salute-threshold.js";
