@@ -136,7 +136,7 @@ export function practiceCamera({ draw, started, nameOf, taken }) {
       const { on, busy } = camera.shown;
       return html`<div class="practice-camera" ?hidden=${hidden}>
         ${camera.picture({ idle: html`${hand}The camera is off` })}
-        <p class="practice-step" role="status">${on ? words : howTo(kind())}</p>
+        <p class="practice-step" role="status">${(on && words) || howTo(kind())}</p>
         <div class="practice-actions">
           ${buttonOf(on ? "Stop the camera" : "Start the camera", on ? stop : start, {
             look: on ? "" : "primary",
