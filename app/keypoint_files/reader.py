@@ -1,4 +1,8 @@
-"""Keypoint file reader: maps names to landmarks, converts to pixels and seconds."""
+"""Keypoint file reader: maps names to landmarks, converts to pixels and seconds.
+
+Each format limits its own size: the file's (`LARGEST_FILE`), that of what it unpacks to
+(`MOST_BYTES`), or the number of frames (`VideoLimits`).
+"""
 
 from __future__ import annotations
 

@@ -1,7 +1,8 @@
-"""Fusion: the weight of each voter in a language, and one score from all their distances.
+"""Fusion: one score from the distances of all voters, and what is compared for it.
 
-A voter's distances are divided by its between-class distance, so that 1 means "as different as two
-gestures of the language", whatever the voter's unit. Its weight is
+**Weights** (`weigh_voters`, `fuse`). A voter's distances are divided by its between-class distance,
+so that 1 means "as different as two gestures of the language", whatever the voter's unit. Its
+weight is
 
     weight = prior * max(0, 1 - within / between),
 
@@ -10,19 +11,18 @@ where `within` is its within-class distance, measured between two people's takes
 of this language. A voter whose between-class distance does not exceed its within-class distance
 gets weight 0.
 
-Second opinion: another way of comparing, whose agreement counts.
+**Second opinion** (`add_second_opinion`). The score is a weighted mean, of which compressed
+velocities are the largest part. The voter `second_opinion` compares the same rows by directions
+alone. It fails on other takes, so that a take of which both say the same is more often right, and
+one of which they differ is more often wrong.
 
-The score is a weighted mean, of which compressed velocities are the largest part. The voter
-`second_opinion` compares the same rows by directions alone. It fails on other takes, so that a take
-of which both say the same is more often right, and one of which they differ is more often wrong.
+**Distinctions** (`find_tempo_dependent`, `find_unambiguous_traversals`) are the directions, sides
+and tempos that tell two gestures of a language apart.
 
-Distinctions: the directions, sides and tempos that tell two gestures of a language apart.
-
-Virtual views: demonstrations rotated to the facing of the diver in the query.
-
-A camera sees a gesture differently when the diver is turned. A demonstration with depth is turned
-by the angle between the two divers, and compared as the camera would see it then. Depth itself is
-never compared: the depth of a pose model is too noisy for that.
+**Virtual views** (`list_views`, `choose_turn`). A camera sees a gesture differently when the diver
+is turned. A demonstration with depth is turned by the angle between the two divers, and compared as
+the camera would see it then. Depth itself is never compared: the depth of a pose model is too noisy
+for that.
 """
 
 from __future__ import annotations

@@ -1,19 +1,18 @@
-"""Outcome: whether a take is answered, asked back or rejected, by novelty detection.
+"""Outcome: whether a take is answered, asked back or rejected, and the confidence of its label.
 
-The fused score (`fusion`) is relative to the language: 1 is as far as two of its gestures are.
-Novelty (Pimentel et al. 2014) is the score divided by one limit for all gestures, and more for a
-take that is much smaller than the gesture; above 1 the gesture is rejected. Where several people
-have shown the gestures, the limit is measured: it is the quantile of the scores of one person's
-demonstrations among those of the others (leave one person out). One person's demonstrations do not
-tell how other people's takes differ; then the limit is a cautious constant. Held hand shapes have a
-limit of their own (`hand_references`). A take between two gestures is answered with both, and the
-diver is asked (`find_answer`).
+A take is rejected by novelty detection (`choose_limit`, `is_rejected`). The fused score (`fusion`)
+is relative to the language: 1 is as far as two of its gestures are. Novelty (Pimentel et al. 2014)
+is the score divided by one limit for all gestures, and more for a take that is much smaller than
+the gesture; above 1 the gesture is rejected. Where several people have shown the gestures, the
+limit is measured: it is the quantile of the scores of one person's demonstrations among those of
+the others (leave one person out). One person's demonstrations do not tell how other people's takes
+differ; then the limit is a cautious constant. Held hand shapes have a limit of their own
+(`hand_references`). A take between two gestures is answered with both, and the diver is asked
+(`find_answer`).
 
-Confidence: the probability that the label of a take is right.
-
-Profile ``full`` estimates it from the novelty and the score of the nearest gesture, and from how
-much farther the second one is. Profile ``paper`` has the share of votes in its place
-(`majority_vote`).
+Confidence is the probability that the label of a take is right (`estimate_confidence`). Profile
+``full`` estimates it from the novelty and the score of the nearest gesture, and from how much
+farther the second one is. Profile ``paper`` has the share of votes in its place (`majority_vote`).
 """
 
 from __future__ import annotations

@@ -1,6 +1,7 @@
-"""Recognition result: label and confidence, with the distances and votes behind them.
+"""Recognition result: label and confidence, the table of scores behind them, and the query.
 
-Score table: the distances of a query to every gesture, and each voter's contribution.
+A `Recognition` is the outcome, a `ScoreTable` holds the distances of a query to every gesture and
+each voter's contribution, and a `Trace` holds both and the query.
 """
 
 from __future__ import annotations

@@ -1,8 +1,7 @@
-"""Estimator factory: creates an estimator by the name of its backend.
+"""Estimator factory: the pose estimators, and the function that creates one by its backend's name.
 
-Composed estimator: a pose estimator of separate models for body and hands.
-
-ONNX estimator, the default: MediaPipe's own models on ONNX Runtime.
+`OnnxPoseEstimator`, the default, runs MediaPipe's own models on ONNX Runtime. `ComposedEstimator`
+takes separate models for body and hands, such as a `BodyFinder` and `TrackedHands`.
 """
 
 from __future__ import annotations

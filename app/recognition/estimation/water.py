@@ -2,16 +2,14 @@
 
 Water absorbs red first and, where it is turbid, blue; particles add a uniform colour; light from
 above leaves divers dark. The models were trained in air. `correct_colours` decides by grey levels,
-for estimators that cannot examine a single image; `WaterSight` decides by the models' scores.
+for estimators that cannot examine a single image. Grey levels do not show which correction a model
+needs: a back-lit diver and one in green murk have the same range of brightness and need opposite
+corrections.
 
-Water sight: runs an estimator on corrected frames, of files and of live streams.
-
-Water choice: selects the water correction with the highest scores of the models.
-
-Grey levels do not show which correction a model needs: a back-lit diver and one in green murk have
-the same range of brightness and need opposite corrections. So the models' scores decide. A frame
-with low scores is in doubt and is examined under every correction. The correction with the highest
-scores for body and hands, over the latest examinations, is used until frames are in doubt again.
+So `WaterSight`, which runs an estimator on corrected frames of files and of live streams, decides
+by the models' scores. A frame with low scores is in doubt and is examined under every correction.
+The correction with the highest scores for body and hands, over the latest examinations, is used
+until frames are in doubt again (`WaterChoice`).
 """
 
 from __future__ import annotations

@@ -1,6 +1,7 @@
-"""DTW alignments: the corresponding steps of a query and a gesture, and their costs.
+"""Alignments: the corresponding steps of a query and a gesture, and how two gestures differ.
 
-Pair difference: how and when the demonstrations of two gestures differ.
+An `Alignment` holds the DTW path and its costs, a `PairDifference` how and when the demonstrations
+of two gestures differ.
 """
 
 from __future__ import annotations

@@ -1,6 +1,7 @@
 """Explanations: what decided a recognition, why, and what would have corrected it.
 
-Vote breakdown: each voter's distances to, and contributions for, two gestures.
+An `Explanation` contains the vote breakdown: each voter's distances to, and contributions for, two
+gestures (`VoterBreakdown`).
 """
 
 from __future__ import annotations

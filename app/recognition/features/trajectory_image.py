@@ -1,8 +1,8 @@
-"""Trajectory images: a gesture's salient paths as white strokes on black, 224 x 224.
+"""Trajectory images: gestures as white strokes or lines on black, 224 x 224.
 
-Hand images: held hands as white lines on black, 224 x 224, in place of a trajectory image.
-
-Where two shapes are held one after the other, an arrow leads from the first to the second.
+`draw` shows a gesture's salient paths as strokes, of which `StrokeMoments` are the moments.
+`draw_hands` shows held hands as lines in their place; where two shapes are held one after the
+other, an arrow leads from the first to the second.
 """
 
 from __future__ import annotations

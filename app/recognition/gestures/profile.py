@@ -1,6 +1,6 @@
-"""Profiles: sets of voters with a decision rule.
+"""Profiles: sets of voters with a decision rule, and their tuning.
 
-Tuning: changes to a profile that are stored with a language, such as weight factors.
+A `Tuning` holds changes to a profile that are stored with a language, such as weight factors.
 """
 
 from __future__ import annotations

@@ -1,10 +1,12 @@
 """Health check: what a language's own demonstrations tell about it before the dive.
 
-Embedding: a map of a language's gestures in the plane, with similar gestures close together.
+`check_health` makes the report. Its parts are
 
-Known signs: gestures that look like a sign which divers already know with another meaning.
-
-Viewing angles: from where a gesture looks like another one, or is not seen to move.
+- findings about single demonstrations, duplicates and forecasts (`find_forecast_findings`),
+- a map of the gestures in the plane, similar ones close together (`embed_gestures`),
+- gestures that look like a sign which divers already know with another meaning
+  (`find_known_signs`), and
+- angles from where a gesture looks like another one, or is not seen to move (`find_blind_angles`).
 """
 
 from __future__ import annotations

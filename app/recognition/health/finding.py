@@ -1,8 +1,8 @@
-"""Findings: errors and notes of a health report, and those about a demonstration by itself.
+"""Findings: errors and notes of a health report, with the rates and the verdict that sum them up.
 
-Verdict on a language: the errors of its check, and what a test has shown of its gestures.
-
-Rates: how often something happened among what was tried, with a 95 % interval.
+`check_demonstration` yields those about a demonstration by itself. A `Rate` tells how often
+something happened among what was tried, with a 95 % interval. The `Verdict` on a language holds the
+errors of its check, and what a test has shown of its gestures.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
-"""Health report: the result of a check, with its forecast and findings.
+"""Health report: the result of a check, with its forecast and findings, and the trigger's rates.
 
-Trigger health: how often a trigger is missed, and how often ordinary movement sets it off.
+`check_trigger` counts how often a trigger is missed, and how often ordinary movement sets it off.
 """
 
 from __future__ import annotations

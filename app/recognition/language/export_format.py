@@ -1,20 +1,18 @@
 """Formats of language files: those that can be written, and the reader of the published one.
 
-PROTEUS export: language definition files (``.ldf``; Fulton, Edge and Sattar, IRVLab/proteus).
+**osg-reference** (`to_reference`, `from_reference`): the published implementation's files
+(IRVLab/One-Shot-Gesture-Recognition, 2025). One JSON object: per label
+``{"image": 224 lists of 224 integers, "salient_keypoints": upper-case MediaPipe names}``. It has no
+trajectory, author, units or versions, so reading one is lossy.
 
-By that package's files and reader: an XML element ``language`` with ``meta`` (name, robot,
-description, directory, read by their order), then ``input`` and ``output``, each with symbols,
-vectors and actions, then ``state``, ``context`` and ``actions``. A symbol has the attributes name,
-id, call_type (trigger, directional or quantity), description and tags, separated by commas. In all
-published files ``input`` is empty, and the reader skips it.
-
-Input symbols are therefore assumed to have the form of output symbols, which are of the same class
-there. The format cannot hold demonstrations, phrases and commands.
-
-osg-reference: the published implementation's files (IRVLab/One-Shot-Gesture-Recognition, 2025).
-
-One JSON object: per label ``{"image": 224 lists of 224 integers, "salient_keypoints": upper-case
-MediaPipe names}``. It has no trajectory, author, units or versions, so reading one is lossy.
+**PROTEUS** (`to_proteus`): language definition files (``.ldf``; Fulton, Edge and Sattar,
+IRVLab/proteus). By that package's files and reader: an XML element ``language`` with ``meta``
+(name, robot, description, directory, read by their order), then ``input`` and ``output``, each with
+symbols, vectors and actions, then ``state``, ``context`` and ``actions``. A symbol has the
+attributes name, id, call_type (trigger, directional or quantity), description and tags, separated
+by commas. In all published files ``input`` is empty, and the reader skips it. Input symbols are
+therefore assumed to have the form of output symbols, which are of the same class there. The format
+cannot hold demonstrations, phrases and commands.
 """
 
 from __future__ import annotations

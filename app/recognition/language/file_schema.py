@@ -1,11 +1,8 @@
-"""File schema: pydantic models of the language file, version 1, with units and axes.
+"""Keys of the language file: pydantic models of version 1 with units and axes.
 
-The JSON Schema published in `schema/` is generated from them and from the docstrings below their
-attributes.
-
-Tuning entry: conversion of tunings to and from their entry in the language file.
-
-Trigger entry of a language file, and its schema.
+`LanguageDocument` is the whole file. The JSON Schema published in `schema/` is generated from the
+models and from the docstrings below their attributes. The entries of tunings and triggers are
+converted here too (`tuning_to_entry`, `entry_to_trigger` and their inverses).
 """
 
 from __future__ import annotations

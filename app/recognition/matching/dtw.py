@@ -1,12 +1,10 @@
 """Dynamic time warping (DTW) between one query and many references (Sakoe and Chiba 1978).
 
-The costs of all pairs of steps are matrix products; `dtw_kernel` finds the best
-alignments of them.
-
-Step distances: distances of all steps of sequences to each other, as roots of matrix products.
-
+`step_distances` computes the distances of all pairs of steps as roots of matrix products:
 ``|q - r|^2 = |q|^2 - 2 q . r + |r|^2`` is the product of ``(-2 q, |q|^2, 1)`` and
 ``(r, 1, |r|^2)``, so that one multiplication of matrices compares a query with many references.
+`dtw_kernel` finds the best alignments of these costs, for `dtw_distances`, `dtw_pairs` and
+references that are prepared once (`DtwReferences`, `DtwBatch`).
 """
 
 from __future__ import annotations

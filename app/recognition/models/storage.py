@@ -1,6 +1,7 @@
-"""Models folder: its location, verification of its files, and atomic writes.
+"""Models folder: the files that belong in it, its location, verification and atomic writes.
 
-Model catalogue: the model files and the SHA-256 that each must have.
+`INSTALLED_FILES` lists the files with the SHA-256 that each must have. The functions find and check
+them (`model_path`, `verify_models`), and copy them (`install_models`, `export_models`).
 """
 
 from __future__ import annotations

@@ -2,9 +2,8 @@
 
 Modelled on CADDIAN (Chiarella et al. 2015, 2018): messages have start and end gestures, and phrases
 have slots for quantities. Every repetition is bounded, so there are finitely many sequences and
-ambiguities can be found exactly, see `ambiguity`.
-
-Validation of phrases: rules beyond the schema, with the JSON pointer of each error.
+ambiguities can be found exactly, see `phrase_ambiguity`. `check_phrases` applies the rules beyond
+the schema; each error has its JSON pointer.
 """
 
 from __future__ import annotations

@@ -1,10 +1,9 @@
-"""Phrase parser: parses messages gesture by gesture and lists what may come next.
+"""Phrase parser: parses messages gesture by gesture, and gives what they mean.
 
-Errors are handled as in CADDIAN (Chiarella et al. 2018): a gesture that was not recognised, or that
-lies between two, is repeated and the sequence kept; one that cannot follow ends the message; and a
-message is read back, so that the diver can cancel it.
-
-Interpretation: the command, values and spoken text of each phrase of a parsed message.
+`PhraseParser` lists what may come next. Errors are handled as in CADDIAN (Chiarella et al. 2018): a
+gesture that was not recognised, or that lies between two, is repeated and the sequence kept; one
+that cannot follow ends the message; and a message is read back, so that the diver can cancel it.
+`interpret_message` returns the command, values and spoken text of each phrase of a parsed message.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """Frame landmarks: the body and the hands that an estimator finds in one image.
 
-Hand shapes: the landmarks of a held hand, without its place and size.
+A `HandShape` is the median of a held hand's landmarks, without its place and size.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """Pose sequences: body landmarks over time as an estimator finds them, in pixels and seconds.
 
-Gaps: interpolates landmarks over the moments at which they are not seen.
+`bridge_short_gaps` and `fill_all_gaps` interpolate landmarks where they are not seen.
 """
 
 from __future__ import annotations

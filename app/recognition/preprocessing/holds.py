@@ -1,6 +1,7 @@
-"""Holds: divides a take without movement into the hand shapes that it holds in sequence.
+"""Holds: the hands whose shape is the gesture, and the shapes that they hold in sequence.
 
-Held hands: finds the hands whose shape is the gesture, in takes in which nothing else moves.
+Both are for takes in which nothing else moves: `find_held_hands` finds the hands, and `find_holds`
+divides the take into their shapes.
 """
 
 from __future__ import annotations

@@ -1,13 +1,13 @@
-"""Outliers: landmarks that jump farther than an arm can go and come back.
+"""Outliers and jumps: landmarks that a pose model has misplaced, or found on another body.
 
-Pose models misplace a landmark for a frame or a few. Between the moments before and after, an arm
-can leave the straight line only as far as its acceleration allows, and less far if it goes on as if
-it had not left.
-
-Jumps: moments of a take at which keypoints leapt away and back, or show another body.
+`find_outliers` finds landmarks that jump farther than an arm can go and come back. Pose models
+misplace a landmark for a frame or a few. Between the moments before and after, an arm can leave the
+straight line only as far as its acceleration allows, and less far if it goes on as if it had not
+left.
 
 Repair removes outliers of at most a quarter of a second. What is left and still leaps farther than
-any hand moves in a frame is found here, for explanations and for faults of demonstrations.
+any hand moves in a frame is found by `find_leaps` and `find_unsteady`, and moments that show
+another body by `find_other_body`, for explanations and for faults of demonstrations.
 """
 
 from __future__ import annotations

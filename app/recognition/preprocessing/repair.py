@@ -1,16 +1,14 @@
 """Repair: corrects side swaps and removes outliers of landmarks, in demonstrations and queries.
 
-Two errors of pose models are repaired: side swaps and outliers (`outliers`). No
-positions are invented: swapped landmarks are exchanged back, and outliers become NaN. Gaps are
-bridged later by `Trajectory.fill_gaps`, and jitter is smoothed by `build_movement`.
+`repair_poses` exchanges back the landmarks of side swaps (`find_side_swaps`), and makes outliers
+NaN (`outliers`). No positions are invented. Gaps are bridged later by `Trajectory.fill_gaps`, and
+jitter is smoothed by `build_movement`.
 
-Side swaps: frames in which the pose model took left for right.
-
-Without a face in view the model confuses the sides for a frame or for many; both hands then jump to
-each other's position and back. Hands that really meet or cross keep their velocity, so the frames
-to exchange are those that give the least sum of accelerations (Viterbi 1967).
-
-Positions are in single precision, exact to a millionth of a torso length, in half the time.
+A side swap is a frame in which the pose model took left for right. Without a face in view the model
+confuses the sides for a frame or for many; both hands then jump to each other's position and back.
+Hands that really meet or cross keep their velocity, so the frames to exchange are those that give
+the least sum of accelerations (Viterbi 1967). Positions are in single precision, exact to a
+millionth of a torso length, in half the time.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
 """Extraction: runs a pose estimator on every frame of a clip and keeps the landmarks.
 
-Picture turn: by how much pictures must be turned for the diver to be upright in them.
-
-Missing salutes: why the report of a clip's quality finds no take between two salutes.
+`record` does so. `find_turn` tells by how much the pictures must be turned for the diver to be
+upright in them, and `explain_missing_salutes` why the report of a clip's quality finds no take
+between two salutes.
 """
 
 from __future__ import annotations

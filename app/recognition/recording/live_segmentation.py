@@ -1,6 +1,7 @@
 """Live segmentation: finds takes frame by frame, with the same rules as in recorded clips.
 
-People in a stream: whose body counts where several are seen and the future is not known.
+`LiveTakes` finds the takes. `PeopleInStream` decides whose body counts where several are seen and
+the future is not known.
 """
 
 from __future__ import annotations

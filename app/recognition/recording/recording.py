@@ -1,11 +1,10 @@
 """Recordings: the landmarks of body and hands and the salute scores of a clip, with their file.
 
-Hand sides: tells a person's left hand from the right one by the wrists of the body.
-
-Unseen time: spans in which a trigger may have been missed, and what is odd about a clock.
-One rule for takes of every source: a take has a label only if no trigger can have been missed in
-it. Between two missed triggers lies the way from one gesture to the next, which may look like a
-third one.
+`place_hands` tells a person's left hand from the right one by the wrists of the body. `find_unseen`
+and `find_missable` find the spans in which a trigger may have been missed, and `tell_clock` tells
+what is odd about a clock. One rule holds for takes of every source: a take has a label only if no
+trigger can have been missed in it. Between two missed triggers lies the way from one gesture to the
+next, which may look like a third one.
 """
 
 from __future__ import annotations

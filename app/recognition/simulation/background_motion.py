@@ -1,14 +1,14 @@
-"""Background motion: synthetic arm movements of divers that are no gestures.
+"""Simulated divers: arm movements that are no gestures, and poses that other people hold.
 
-Hands also reach for things, adjust the mask or scull for balance, and a gesture that resembles such
-a movement causes false alarms. The movements are not recorded: positions in front of a body of
-average proportions (Winter 2009, table 4.1) are joined by minimum-jerk strokes (Flash and Hogan
-1985), with position, size, tempo and hand drawn at random for each example.
+`simulate_background_motion`: hands also reach for things, adjust the mask or scull for balance, and
+a gesture that resembles such a movement causes false alarms. The movements are not recorded:
+positions in front of a body of average proportions (Winter 2009, table 4.1) are joined by
+minimum-jerk strokes (Flash and Hogan 1985), with position, size, tempo and hand drawn at random for
+each example.
 
-Held poses: a pose of the arms as other people hold it, in front of a camera at another angle.
-
-A person's limbs are longer or shorter against the torso, the hands are not held in quite the same
-place, the diver stands turned and leans, and holds the pose for longer or shorter.
+`simulate_held_poses`: other people hold a pose of the arms in front of a camera at another angle.
+Their limbs are longer or shorter against the torso, the hands are not held in quite the same place,
+the diver stands turned and leans, and holds the pose for longer or shorter.
 """
 
 from __future__ import annotations

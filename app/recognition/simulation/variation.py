@@ -1,9 +1,10 @@
-"""Variation: random variants of a demonstration, as further takes by the same or another person.
+"""Variation: random variants of demonstrations, as further takes by the same or another person.
 
-As in Cabrera and Wachs (2017), the points of the figure are moved at random and what lies between
-them follows smoothly; but the spreads are measured on pairs of takes of one gesture (`SPREADS`),
-and a smooth random field moves all points. By the voters' distances the variants are as close to
-people's takes as those of other models, or closer (`benchmarks/studies/variants.md`).
+`draw_variants` varies movements. As in Cabrera and Wachs (2017), the points of the figure are moved
+at random and what lies between them follows smoothly; but the spreads are measured on pairs of
+takes of one gesture (`SPREADS`), and a smooth random field moves all points. By the voters'
+distances the variants are as close to people's takes as those of other models, or closer
+(`benchmarks/studies/variants.md`).
 
 1. **Habit**: size, slant, stretch and shear of each arm's movement about its own mean position.
 2. **Waver**: a displacement along the path, a sum of cosines with random coefficients.
@@ -15,12 +16,10 @@ All landmarks of an arm share habit and waver, each in proportion to its own mot
 elbow follows its wrist. A hand turns with its forearm. No bone of an arm becomes longer than
 possible (`limb_length`).
 
-Hand variation: random variants of held hands, as in further takes of the same shape.
-
-A hand is turned in the image, seen from another side, and its fingers are bent and spread a little
-otherwise. The spreads are those with which variants are about as far from a demonstration as takes
-of divers' signs are: of the same view for the demonstrator, of another view for another person
-(`benchmarks/studies/hand-shapes.md`).
+`vary_hands` varies held hands. A hand is turned in the image, seen from another side, and its
+fingers are bent and spread a little otherwise. With these spreads (`HAND_SPREADS`) variants are
+about as far from a demonstration as takes of divers' signs are: of the same view for the
+demonstrator, of another view for another person (`benchmarks/studies/hand-shapes.md`).
 """
 
 from __future__ import annotations

@@ -1,6 +1,7 @@
-"""Atomic files: a reader and a power cut find the old content or the new one, never a part.
+"""File contents: atomic replacement, and the SHA-256 of files of any size.
 
-File hashes: the SHA-256 of files of any size, read in chunks.
+With `write_atomically` a reader and a power cut find the old content or the new one, never a part.
+`hash_file` reads in chunks.
 """
 
 from __future__ import annotations

@@ -1,11 +1,9 @@
 """Look-alikes: words that are written differently and look the same, on a slate for example.
 
 Two words look alike if their skeletons are the same (Unicode Technical Standard 39, section 4).
-
-Joiners: zero-width characters that belong to the spelling of a word.
-
-Persian and Urdu keep letters apart by one of them, Hindi and Sinhala choose a ligature by the other
-(Unicode Standard Annex 31, section 2.3; RFC 5892, appendix A.1 and A.2).
+Joiners are zero-width characters that belong to the spelling of a word: Persian and Urdu keep
+letters apart by one of them, Hindi and Sinhala choose a ligature by the other (Unicode Standard
+Annex 31, section 2.3; RFC 5892, appendix A.1 and A.2).
 """
 
 from __future__ import annotations

@@ -1,9 +1,8 @@
 """Trigger of a language: what a diver holds before and after a gesture.
 
-Arm pose: positions of elbows and wrists, and a score of how close a body is to them.
-
-Places are relative to the middle of the shoulders and the length of the torso in the same frame,
-so that a stream gives the scores that its recording gives.
+One kind is an `ArmPose`: positions of elbows and wrists, and a score of how close a body is to
+them. Places are relative to the middle of the shoulders and the length of the torso in the same
+frame, so that a stream gives the scores that its recording gives.
 """
 
 from __future__ import annotations

@@ -1,6 +1,7 @@
-"""Motion voters: compare the movements of two takes, most of them aligned by DTW.
+"""Motion voters: compare the movements of two takes.
 
-Voter `wrist_bend`: the angle between forearm and hand.
+`velocity`, `place`, `path` and `second_opinion` align them by DTW, `tempo` compares their durations
+and `wrist_bend` the mean angle between forearm and hand.
 """
 
 from __future__ import annotations
@@ -139,8 +140,8 @@ class SecondOpinion(DtwVoter):
 
     A second way of comparing, which knows neither speed nor place: of both arms together, relative
     to the torso of the same moment, only where they go next, as a unit vector. It is no part of the
-    weighted mean: `fusion.hear` says how it counts. It abstains where no torso, or not both
-    arms are seen.
+    weighted mean: `fusion.add_second_opinion` says how it counts. It abstains where no torso, or
+    not both arms are seen.
     """
 
     name = "second_opinion"

@@ -1,10 +1,8 @@
-"""Shape voters: compare trajectory images (paper, Sec. IV-D), most of them by one proportion.
+"""Shape voters: compare trajectory images (paper, Sec. IV-D).
 
-Voter `fourier`: Fourier descriptors of the contour.
-
-Voter `hu`: Hu's seven moment invariants.
-
-Voter `zernike`: magnitudes of Zernike moments.
+`aspect_ratio`, `solidity`, `circularity` and `path_complexity` compare one proportion, `fourier`
+the Fourier descriptors of the contour, `hu` Hu's seven moment invariants, and `zernike` the
+magnitudes of Zernike moments.
 """
 
 from __future__ import annotations

@@ -1,9 +1,10 @@
-"""Vehicle actions as MAVLink: the messages that request an action, and the proof that it is done.
+"""Vehicle actions as MAVLink: the messages that request each, and the proof that it is done.
 
-A mode counts as set when it is acknowledged, also as in progress, and the heartbeat shows it: an
-acknowledgement alone could belong to an earlier command, a heartbeat alone could date from before a
-restart. The mode is never asked for: each heartbeat tells it. ArduSub does not acknowledge a depth,
-which counts as set when the reported target is that depth. Lights and camera are only acknowledged.
+The actions are listed in `table`. A mode counts as set when it is acknowledged, also as in
+progress, and the heartbeat shows it: an acknowledgement alone could belong to an earlier command, a
+heartbeat alone could date from before a restart. The mode is never asked for: each heartbeat tells
+it. ArduSub does not acknowledge a depth, which counts as set when the reported target is that
+depth. Lights and camera are only acknowledged.
 """
 
 from __future__ import annotations

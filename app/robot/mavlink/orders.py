@@ -1,7 +1,8 @@
 """Vehicle orders: sends the steps of one mission until each is proven done, without a network.
 
-There is no queue: a newer mission replaces the active one, so that no action is done long after its
-request.
+`OrderDesk` holds the active order. There is no queue: a newer mission replaces it, so that no
+action is done long after its request. `ModeWatch` notices a pilot who sets
+another mode, and wins.
 """
 
 from __future__ import annotations

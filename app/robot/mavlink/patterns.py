@@ -1,11 +1,10 @@
 """Patterns: the pulses by which lights and tilt show a reply, and what was before them.
 
-How many pulses a reply has: `app.robot.commands.replies`.
-
-A pattern begins only when the vehicle reports the present value, and the pilot did not change it a
-moment ago. A value that is neither ours nor the one before is the pilot's: the pattern ends, and
-that value stays. The value before is kept in a file while a pattern is played, so that a robot that
-starts again restores it too.
+`PatternPlayer` plays one output, `ReplyDesk` chooses the reply; `app.robot.commands.replies` says
+how many pulses it has. A pattern begins only when the vehicle reports the present value, and the
+pilot did not change it a moment ago. A value that is neither ours nor the one before is the
+pilot's: the pattern ends, and that value stays. The value before is kept in a file while a pattern
+is played, so that a robot that starts again restores it too.
 
 Times are seconds of a steady clock, or heard seconds: only those in which the vehicle reports the
 value, so that a lost link uses up none.

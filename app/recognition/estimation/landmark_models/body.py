@@ -1,6 +1,7 @@
 """Body tracker: finds people with the person detector, then tracks them from frame to frame.
 
-Smoothing filters: remove the jitter of landmarks over time.
+Its smoothing filters, `OneEuroFilter` and `ExponentialFilter`, remove the jitter of landmarks over
+time.
 """
 
 from __future__ import annotations

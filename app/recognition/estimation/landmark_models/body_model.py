@@ -1,13 +1,12 @@
-"""Body model: landmarks of the person in one region of an image.
+"""Body model: landmarks of the person in one region of an image, and the search of a whole image.
 
-Body search: finds rotated or dim persons that the person detector misses.
-
-Divers swim on their sides and head down, and water takes the contrast that the person detector was
-trained on. So its weak candidates count too, in the image turned four ways, and the landmark model
-decides among them. It runs twice, the second time on the region that its first result gives, and
-the product of both scores is the candidate's score. A region with nobody in it seldom leads to a
-second one with a high score. Candidates whose torso leaves the image, or that would not fit into
-it, are dropped: the detector sees people that near itself, and the model takes hands for bodies.
+`BodySearch` finds rotated or dim persons that the person detector misses. Divers swim on their
+sides and head down, and water takes the contrast that the detector was trained on. So its weak
+candidates count too, in the image turned four ways, and `BodyModel` decides among them. It runs
+twice, the second time on the region that its first result gives, and the product of both scores is
+the candidate's score. A region with nobody in it seldom leads to a second one with a high score.
+Candidates whose torso leaves the image, or that would not fit into it, are dropped: the detector
+sees people that near itself, and the model takes hands for bodies.
 """
 
 from __future__ import annotations

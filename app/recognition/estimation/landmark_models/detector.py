@@ -1,6 +1,7 @@
-"""Single-shot detectors: find persons or palms in a whole image.
+"""Single-shot detectors that find persons or palms in an image, and the refinement of landmarks.
 
-Landmark refinement: corrects landmarks by the pose model's heat maps.
+A `Detector` reads a model's output by its `DetectorLayout`; `refine` corrects landmarks by the pose
+model's heat maps.
 """
 
 from __future__ import annotations

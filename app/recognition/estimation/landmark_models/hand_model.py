@@ -1,10 +1,9 @@
-"""Hand model: the landmarks of one hand in a region of an image.
+"""Hand model and hand finder: landmarks of one hand in a region, and places of hands in an image.
 
-Hand finder: finds whole hands of divers, in gloves too, where no fingers need to be seen.
-
-The model is MediaPipe's palm detector, taught further on rendered divers (`release/hand_finder`).
-Its boxes are of whole hands; of its keypoints the first is the wrist and the third the middle
-finger's knuckle.
+`HandFinder` finds whole hands of divers, in gloves too, where no fingers need to be seen. Its model
+is MediaPipe's palm detector, taught further on rendered divers (`release/hand_finder`). Its boxes
+are of whole hands; of its keypoints the first is the wrist and the third the middle finger's
+knuckle.
 """
 
 from __future__ import annotations

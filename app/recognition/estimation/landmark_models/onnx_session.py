@@ -1,14 +1,12 @@
-"""ONNX session: loads a model once, checks its shapes, and runs it per frame.
+"""ONNX sessions: models that are loaded once, checked by their shapes, and run per frame.
+
+`ModelSession` runs MediaPipe's pinned models on square crops. `PlanarModel` runs a user's own model
+that takes colour planes; there a wrong file is the usual mistake, so errors state the shape found
+and the shape needed. `Letterbox` fits an image into its input without distortion, with bars at the
+sides.
 
 ONNX Runtime is imported with the first model: it starts a thread, and a process with threads must
 not fork, as the studio's does for its workers.
-
-Planar model: a user's ONNX model that takes colour planes, loaded once and run per frame.
-
-MediaPipe's pinned models use `onnx_session`. A wrong file is the usual mistake here, so errors
-state the shape found and the shape needed.
-
-Letterbox: fits an image into a model's input without distortion, with bars at the sides.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
-"""Image region: a rotated square that is cropped for a model, with the mapping back.
+"""Image regions: rotated squares that are cropped for a model, and the boxes that they come from.
 
-Hand regions: the region of a whole hand, from its palm or from its previous landmarks.
-
-Non-maximum suppression: merges overlapping boxes of one object, or keeps the best of them.
+A `Region` maps its results back to the image. `region_of_palm` and `region_of_hand` give that of a
+whole hand, from its palm or from its previous landmarks. Non-maximum suppression merges overlapping
+boxes of one object (`blend_overlapping`), or keeps the best of them (`select_best`).
 """
 
 from __future__ import annotations
