@@ -222,7 +222,7 @@ class OwnDemonstrations:
     def leave_one(self, expected: str, without: LeftOut) -> bool:
         """Return whether a gesture is known by another demonstration than those left out.
 
-        None of the gestures, `NONE_EXPECTED`, needs none.
+        A take of none of the gestures, `NONE_EXPECTED`, needs no demonstration.
         """
         if expected == NONE_EXPECTED:
             return True

@@ -436,6 +436,7 @@ def _build(gestures: tuple[Gesture, ...]) -> References:
 
 @lru_cache(maxsize=REMEMBERED_TURNS)
 def _turn(references: References, turns: tuple[int, ...]) -> References:
+    """Return demonstrations whose bodies are turned by degrees about the vertical, remembered."""
     described = {name: values.copy() for name, values in references.described.items()}
     for index in np.unique(references.rows).tolist():
         trajectory = references.shown[index].trajectory

@@ -14,7 +14,7 @@ import { attempt, toast } from "../core/toasts.js";
 /** @import { HealthReport, Invitation, NewInvitation, ReceivedTake, ReceivedTakeOutlook, State } from "../core/types.d.ts" */
 
 const PEOPLE = 2; // With whoever wrote the language they are three, from which on it is foretold.
-const DAYS = [1, 7, 30];
+const DAYS = [1, 7, 30]; // The second is chosen at first, as `days` of InvitationDraft.
 const MOST_SHOWN = 5;
 
 const THIS_MACHINE = ["localhost", "127.0.0.1", "[::1]"];
