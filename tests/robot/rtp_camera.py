@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import socket
 import threading
+from contextlib import suppress
 from fractions import Fraction
 
 import av
@@ -68,10 +69,15 @@ class RtpCamera:
 
 
 def free_port() -> int:
-    """Return a UDP port that nobody has, with the next one for RTCP."""
+    """Return a UDP port that nobody has on any address, nor the next one, which RTCP takes."""
     while True:
-        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as found:
-            found.bind(("127.0.0.1", 0))
+        with (
+            socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as found,
+            socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as following,
+        ):
+            found.bind(("", 0))
             port = int(found.getsockname()[1])
-        if port % 2 == 0:
-            return port
+            if port % 2 == 0:
+                with suppress(OSError):
+                    following.bind(("", port + 1))
+                    return port

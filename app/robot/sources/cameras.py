@@ -286,6 +286,7 @@ def describe_address(address: str, seconds: float) -> Datagrams:
     packet, sender = wait_for_packets(port, group, local, sender, seconds)
     if len(packet) < LEAST_HEAD or packet[0] >> 6 != RTP_VERSION:
         return Datagrams(None, local, "" if group else sender)
+    _require_next(port, local)
     kind = packet[1] & 0x7F
     encoding = FIXED_TYPES.get(kind, "H264/90000")
     text = DESCRIPTION.format(group=group or "0.0.0.0", port=port, kind=kind, encoding=encoding)
@@ -316,7 +317,9 @@ def read_description(path: str, seconds: float) -> Datagrams:
     connection = re.search(r"^c=IN IP4 ([\d.]+)", text, re.MULTILINE)
     # Cameras name there themselves, this machine, or nobody: it says nothing about the sender.
     group, local, _ = _sort_host(connection and connection[1])
-    wait_for_packets(int(media[1]), group, local, "", seconds)
+    port = int(media[1])
+    wait_for_packets(port, group, local, "", seconds)
+    _require_next(port, local)
     return Datagrams(text, local, "")
 
 
@@ -374,6 +377,19 @@ def wait_for_packets(
         f"nothing arrived on UDP port {port}{by} for {seconds:g} s; is the camera on, does it "
         "send to this machine's address, and does the firewall let it through?"
     )
+
+
+def _require_next(port: int, local: str) -> None:
+    """Check that the port after that of RTP is free: FFmpeg listens there for RTCP."""
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as listening:
+        try:
+            listening.bind((local, port + 1))
+        except (OSError, OverflowError) as error:
+            reason = getattr(error, "strerror", None) or error
+            raise SourceError(
+                f"UDP port {port + 1} cannot be listened on ({reason}); RTP needs it beside "
+                f"{port}: stop the program that has it, or send to another port"
+            ) from error
 
 
 def _sort_host(host: str | None) -> tuple[str | None, str, str]:

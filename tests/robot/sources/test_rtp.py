@@ -74,6 +74,15 @@ def test_the_first_sender_alone_is_watched_on_the_address_that_is_named(
     assert brightness == {10}
 
 
+@pytest.mark.parametrize("form", ["udp://@:{}", "sdp"])
+def test_a_program_that_has_the_port_of_rtcp_is_told(form: str, port: int, tmp_path: Path) -> None:
+    address = describe(port, tmp_path) if form == "sdp" else form.format(port)
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as other, RtpCamera(port):
+        other.bind(("127.0.0.1", port + 1))
+        with pytest.raises(SourceError, match=rf"UDP port {port + 1} cannot .* beside {port}"):
+            open_source(address)
+
+
 def test_a_sender_that_is_named_is_waited_for(port: int, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(cameras, "_sort_host", lambda host: (None, "", host))
     monkeypatch.setattr(cameras, "OPEN_SECONDS", 0.5)
