@@ -69,11 +69,10 @@ durations: $(VENV)/.development $(PAGE_TOOLS) models  ## Write what each test an
 	  --hypothesis-profile ci -q $(TESTS)
 
 # Distributed by file, since the tests of one file share a server, a database or a recording; in the
-# order of tests/conftest.py, the long ones first. As many workers as tests/conftest.py finds for the
-# machine: three on two cores, since tests with a browser or other processes wait a lot, but four
-# browsers at once take half as much processor time again as two. Property tests use the same
-# examples everywhere, so that a change fails only for its own faults; plain `pytest` keeps trying new
-# examples.
+# order of tests/conftest.py, the long ones first. Two workers a core, since most tests wait; half of
+# the workers take the tests with a browser, since four browsers at once take half as much processor
+# time again as two. Property tests use the same examples everywhere, so that a change fails only for
+# its own faults; plain `pytest` keeps trying new examples.
 pytest: $(VENV)/.development $(PAGE_TOOLS) models
 ifndef MEDIAPIPE_LOCK
 	@echo "MediaPipe's own library is installed on Linux x86-64 only; the parity test will be skipped"

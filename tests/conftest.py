@@ -3,12 +3,15 @@
 import gc
 import os
 from collections import Counter
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Collection, Iterator
 from pathlib import Path
 from typing import get_args
 
 import pytest
 from hypothesis import settings
+from xdist.remote import Producer  # type: ignore[import-untyped]
+from xdist.scheduler import LoadFileScheduling  # type: ignore[import-untyped]
+from xdist.workermanage import WorkerController  # type: ignore[import-untyped]
 
 from app.recognition import Recording
 from app.recognition.errors import ModelError
@@ -44,21 +47,48 @@ WORKER_GIB = 2
 """Memory of a worker with a server that finds poses, and a browser."""
 
 
-def workers(cores: int, memory: int, quick: bool) -> int:
+def workers(cores: int, memory: int) -> int:
     """Return how many workers test at once, on a machine with some cores and bytes of memory.
 
-    More than cores, for tests wait: the quick ones, which have no browser, most of all.
+    More than cores, for tests wait; half of them take the tests with a browser (`TwoGroups`).
     """
-    wanted = 2 * cores if quick else cores + cores // 2
-    return max(1, min(wanted, memory // (WORKER_GIB * GIB)))
+    return max(1, min(2 * cores, memory // (WORKER_GIB * GIB)))
 
 
-def pytest_xdist_auto_num_workers(config: pytest.Config) -> int:
+def pytest_xdist_auto_num_workers() -> int:
     """Choose the workers of `-n auto`, by what the machine or its container has."""
     from dask.system import CPU_COUNT
     from distributed.system import MEMORY_LIMIT
 
-    return workers(CPU_COUNT, MEMORY_LIMIT, quick="not slow" in config.option.markexpr)
+    return workers(CPU_COUNT, MEMORY_LIMIT)
+
+
+WITH_BROWSER = "tests/browser/"
+
+
+class TwoGroups(LoadFileScheduling):  # type: ignore[misc]
+    """Gives half of the workers the files with a browser first, the others the rest.
+
+    A browser computes as long as it is open: several on one core slow each other down. Most other
+    tests wait, for processes and links.
+    """
+
+    def _assign_work_unit(self, node: WorkerController) -> None:
+        nodes = self.nodes
+        browses = 2 * nodes.index(node) < len(nodes)
+        self.workqueue.move_to_end(choose_file(self.workqueue, browses=browses), last=False)
+        super()._assign_work_unit(node)
+
+
+def choose_file(files: Collection[str], *, browses: bool) -> str:
+    """Return the first file of a worker's own group, the first of all where none is left."""
+    own = (file for file in files if file.startswith(WITH_BROWSER) is browses)
+    return next(own, next(iter(files)))
+
+
+def pytest_xdist_make_scheduler(config: pytest.Config, log: Producer) -> LoadFileScheduling | None:
+    """Distribute files by `TwoGroups`; anything else as xdist does."""
+    return TwoGroups(config, log) if config.option.dist == "loadfile" else None
 
 
 def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:

@@ -9,17 +9,22 @@ from pathlib import Path
 
 import pytest
 
-from tests.conftest import GIB, ROOT, WITHOUT_BROWSER, workers
+from tests.conftest import GIB, ROOT, WITHOUT_BROWSER, choose_file, workers
 
 
 @pytest.mark.parametrize(
-    ("cores", "gib", "quick", "expected"),
-    [(2, 24, False, 3), (2, 24, True, 4), (16, 64, False, 24), (16, 8, True, 4), (1, 1, False, 1)],
+    ("cores", "gib", "expected"), [(2, 24, 4), (16, 64, 32), (16, 8, 4), (1, 1, 1)]
 )
-def test_workers_are_as_many_as_cores_and_memory_allow(
-    cores: int, gib: int, quick: bool, expected: int
-) -> None:
-    assert workers(cores, gib * GIB, quick) == expected
+def test_workers_are_as_many_as_cores_and_memory_allow(cores: int, gib: int, expected: int) -> None:
+    assert workers(cores, gib * GIB) == expected
+
+
+def test_a_worker_takes_files_of_its_own_group_first() -> None:
+    files = ["tests/browser/test_page.py", "tests/store/test_clips.py", "tests/cli/test_check.py"]
+    assert choose_file(files, browses=True) == files[0]
+    assert choose_file(files, browses=False) == files[1]
+    assert choose_file(files[1:], browses=True) == files[1]
+    assert choose_file(files[:1], browses=False) == files[0]
 
 
 @pytest.mark.slow
