@@ -1,6 +1,6 @@
 // The button beside a choice of clips that loads older ones into it.
 
-import { h } from "../core/dom.js";
+import { disableDuring, h } from "../core/dom.js";
 import { plural } from "../core/format.js";
 import { follow, state } from "../core/state.js";
 import { loadOlder } from "./clip-pages.js";
@@ -21,9 +21,7 @@ function draw(button) {
 export function olderClipsButton(loaded = () => {}) {
   const button = h("button", { type: "button", className: "link older-clips" });
   button.onclick = async () => {
-    button.disabled = true;
-    await loadOlder();
-    button.disabled = false;
+    await disableDuring(button, loadOlder);
     loaded();
   };
   draw(button);

@@ -1,7 +1,7 @@
 // The sample clips, each a button that adds it to the library.
 
 import * as api from "../core/api.js";
-import { byId } from "../core/dom.js";
+import { byId, disableDuring } from "../core/dom.js";
 import { attempt } from "../core/toasts.js";
 import { html, iconOf, nothing, render } from "../templates.js";
 import { loadClip } from "./clip-pages.js";
@@ -23,9 +23,9 @@ const readable = (name) => name.replace(/\.\w+$/, "").replace(/[_-]+/g, " ");
  * @param {HTMLButtonElement} button
  */
 export async function addSampleClip(sample, button) {
-  button.disabled = true;
-  const accepted = await attempt("Adding the sample", () => api.samples.add(sample.name));
-  button.disabled = false;
+  const accepted = await disableDuring(button, () =>
+    attempt("Adding the sample", () => api.samples.add(sample.name)),
+  );
   if (!accepted) return null;
   await attempt("Loading the clip", () => loadClip(accepted.id));
   select(accepted.id);

@@ -2,7 +2,7 @@
 
 import * as api from "../core/api.js";
 import { closeDialog, showDialog } from "../core/dialogs.js";
-import { byId } from "../core/dom.js";
+import { byId, disableDuring } from "../core/dom.js";
 import { duration, plural } from "../core/format.js";
 import { elementOf, html } from "../templates.js";
 
@@ -54,15 +54,14 @@ export function openTopics(clip) {
     event.preventDefault();
     const { target: form, submitter } = event;
     const confirm = /** @type {HTMLButtonElement} */ (submitter);
-    confirm.disabled = true;
+    const topic = String(new FormData(form).get("topic"));
     try {
-      await api.clips.chooseTopic(clip.id, String(new FormData(form).get("topic")));
+      await disableDuring(confirm, () => api.clips.chooseTopic(clip.id, topic));
       closeDialog();
     } catch (error) {
       const problem = form.querySelector(".field-problem");
       problem.textContent = error.message;
       problem.hidden = false;
-      confirm.disabled = false;
     }
   };
   showDialog(

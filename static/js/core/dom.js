@@ -39,6 +39,19 @@ export const WRITES = { "data-writes": "" };
 export const byId = (id) => /** @type {any} */ (document.getElementById(id));
 
 /**
+ * Disable a button until the work that it began is over.
+ *
+ * @template T
+ * @param {HTMLButtonElement} button
+ * @param {() => Promise<T>} work
+ * @returns {Promise<T>} What the work returns.
+ */
+export async function disableDuring(button, work) {
+  button.disabled = true;
+  return work().finally(() => button.removeAttribute("disabled"));
+}
+
+/**
  * Make an element. Properties are set as properties (`onclick`, `className`, `hidden`), those with
  * a dash as attributes; children are elements or text, and null is left out.
  *

@@ -116,8 +116,8 @@ function listen(handlers, after) {
  */
 export function drawConnection({ connected }) {
   const element = byId("connection");
-  if (connected === null) element.textContent = "Connecting\u2026";
-  else element.textContent = connected ? "Connected" : "Reconnecting\u2026";
+  const missing = connected === null ? "Connecting\u2026" : "Reconnecting\u2026";
+  element.textContent = connected ? "Connected" : missing;
   element.classList.toggle("on", connected === true);
   byId("away").hidden = connected !== false;
 }

@@ -4,7 +4,7 @@ import { headsOf, takeRow, takesTable } from "../clips/takes.js";
 import * as api from "../core/api.js";
 import { copy } from "../core/clipboard.js";
 import { closeDialog, showDialog } from "../core/dialogs.js";
-import { byId } from "../core/dom.js";
+import { byId, disableDuring } from "../core/dom.js";
 import { ago, dateAndTime, plural } from "../core/format.js";
 import { currentLanguage, state, update } from "../core/state.js";
 import { buttonOf, elementOf, guard, html, nothing, repeat, until } from "../templates.js";
@@ -182,16 +182,14 @@ function openForm() {
   const make = async (event) => {
     event.preventDefault();
     const { submitter: button } = /** @type {any} */ (event);
-    button.disabled = true;
+    const limits = { people: numberOf("invited-people"), days: numberOf("invited-days") };
     try {
-      const limits = { people: numberOf("invited-people"), days: numberOf("invited-days") };
-      showLink(await api.invitations.make(id, limits));
+      showLink(await disableDuring(button, () => api.invitations.make(id, limits)));
       loadInvitations(state);
     } catch (error) {
       const problem = button.form.querySelector(".field-problem");
       problem.textContent = error.message;
       problem.hidden = false;
-      button.disabled = false;
     }
   };
   showDialog(

@@ -1,6 +1,7 @@
 // The sample languages that are not in the library, each a button that adds it.
 
 import * as api from "../core/api.js";
+import { disableDuring } from "../core/dom.js";
 import { plural } from "../core/format.js";
 import { state } from "../core/state.js";
 import { attempt } from "../core/toasts.js";
@@ -23,11 +24,8 @@ const offer = (sample) =>
       type="button"
       class="sample-language"
       data-writes
-      @click=${async (/** @type {any} */ { currentTarget: button }) => {
-        button.disabled = true;
-        await addSampleLanguage(sample);
-        button.disabled = false;
-      }}
+      @click=${(/** @type {any} */ { currentTarget }) =>
+        disableDuring(currentTarget, () => addSampleLanguage(sample))}
     >
       <b>${sample.title}</b>
       <span class="dim"

@@ -1,7 +1,7 @@
 // Ranges of a clip that were labelled by hand, saved together as gestures or as takes to test.
 
 import { tabStore } from "../core/browser-store.js";
-import { byId, h, WRITES } from "../core/dom.js";
+import { byId, disableDuring, h, WRITES } from "../core/dom.js";
 import { moment, plural } from "../core/format.js";
 import { selectedClip, selectedRange, state, update } from "../core/state.js";
 import { limit } from "../core/text-limit.js";
@@ -78,13 +78,12 @@ export function buildRanges(hasLanguage) {
   send.onclick = async () => {
     const [ranges, tests] = [here(), areTests()];
     if (!tests && !(await hasLanguage())) return;
-    send.disabled = true;
-    const saved = await attempt("Saving the ranges", async () => {
+    const save = async () => {
       if (!tests) await saveInto(state.language ?? "", ranges);
       else await addToTestSet(ranges.map(({ label, ...at }) => ({ ...at, expected: label })));
       return true;
-    });
-    send.disabled = false;
+    };
+    const saved = await disableDuring(send, () => attempt("Saving the ranges", save));
     if (saved) keep(state.ranges.filter((each) => !ranges.includes(each)));
     if (saved && tests) toast("In the test set", "They are recognised again after every change.");
   };

@@ -5,7 +5,7 @@ import { listWarnings, takesLanguage } from "../clips/salutes.js";
 import { reloadClip } from "../clips/clip-store.js";
 import * as api from "../core/api.js";
 import { closeDialog } from "../core/dialogs.js";
-import { byId } from "../core/dom.js";
+import { byId, disableDuring } from "../core/dom.js";
 import { askWhich, percent } from "../core/format.js";
 import { isReadable, selectedClip, selectedRange, state, update } from "../core/state.js";
 import { attempt, complain, toast } from "../core/toasts.js";
@@ -161,11 +161,8 @@ async function recognise() {
     );
     return;
   }
-  const button = byId("recognise");
-  button.disabled = true;
   update({ trial: null });
-  await recogniseWith();
-  button.disabled = false;
+  await disableDuring(byId("recognise"), recogniseWith);
 }
 
 /**

@@ -258,20 +258,23 @@ export const takeFilesIn = (view, take) => takers.set(view, take);
 export function acceptFiles() {
   const veil = byId("veil");
   let depth = 0; // dragenter and dragleave fire for every element on the way.
+  const enter = (/** @type {number} */ deep) => {
+    depth = deep;
+    veil.hidden = depth <= 0;
+  };
   /** @param {DragEvent} event */
   const carriesFiles = (event) => [...(event.dataTransfer?.types ?? [])].includes("Files");
   addEventListener("dragenter", (event) => {
-    if (carriesFiles(event)) veil.hidden = ++depth === 0;
+    if (carriesFiles(event)) enter(depth + 1);
   });
   addEventListener("dragleave", (event) => {
-    if (carriesFiles(event)) veil.hidden = --depth <= 0;
+    if (carriesFiles(event)) enter(depth - 1);
   });
   addEventListener("dragover", (event) => carriesFiles(event) && event.preventDefault());
   addEventListener("drop", (event) => {
     if (!carriesFiles(event)) return;
     event.preventDefault();
-    depth = 0;
-    veil.hidden = true;
+    enter(0);
     const take = takers.get(state.view) ?? addFiles;
     Promise.resolve(take(event.dataTransfer?.files ?? [])).catch((error) =>
       complain(error, "Adding the files"),
