@@ -22,6 +22,7 @@ from app.api.ingest.multipart import FRAME_BYTES
 from app.settings import Settings
 from tests.api.running import client_of, until
 from tests.conftest import ROOT
+from tests.ports import free_port
 
 pytestmark = pytest.mark.slow
 
@@ -48,11 +49,6 @@ def serving(folder: Path, **settings: str) -> Iterator[int]:
             yield int(match[1])
         finally:
             process.terminate()
-
-
-def free_port() -> int:
-    with socket.create_server(("127.0.0.1", 0)) as listening:
-        return int(listening.getsockname()[1])
 
 
 @contextmanager

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import socket
 import threading
-from contextlib import suppress
 from fractions import Fraction
 
 import av
@@ -66,18 +64,3 @@ class RtpCamera:
                 for packet in stream.encode(frame):
                     container.mux(packet)
                 number += 1
-
-
-def free_port() -> int:
-    """Return a UDP port that nobody has on any address, nor the next one, which RTCP takes."""
-    while True:
-        with (
-            socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as found,
-            socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as following,
-        ):
-            found.bind(("", 0))
-            port = int(found.getsockname()[1])
-            if port % 2 == 0:
-                with suppress(OSError):
-                    following.bind(("", port + 1))
-                    return port

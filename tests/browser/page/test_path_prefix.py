@@ -11,9 +11,10 @@ from playwright.sync_api import Page, Response, expect
 
 from app.settings import Settings
 from tests.api.running import Running, client_of, running, until
-from tests.api.test_reverse_proxies import answers, free_port, nginx
+from tests.api.test_reverse_proxies import answers, nginx
 from tests.browser.conftest import OpenPage
 from tests.browser.files import drop
+from tests.ports import free_port
 from tests.short_clips import shortened
 
 PREFIX = "/studio"

@@ -19,8 +19,8 @@ from tests.cli.robots.test_robot import (
     until_words,
     upload,
 )
+from tests.ports import free_port
 from tests.robot.mavlink.vehicle import sailing
-from tests.robot.rtp_camera import free_port
 from tests.short_clips import thinned
 
 

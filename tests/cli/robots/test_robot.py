@@ -24,11 +24,11 @@ from app.robot.publishing.status_page import UPLOAD_TYPE
 from tests.command_line import OsgStudio
 from tests.conftest import ROOT
 from tests.documented import documented
+from tests.ports import free_port
 from tests.published_schemas import ROBOT_EVENT
 from tests.recognition.damaged_clips import write_clip
 from tests.robot.languages import language_of, spoken
 from tests.robot.mjpeg_server import MjpegServer
-from tests.robot.rtp_camera import free_port
 from tests.short_clips import thinned
 from tests.test_layers import modules_of, requirements_of
 
@@ -193,10 +193,12 @@ def test_who_reads_no_more_ends_the_robot_without_complaint(
 def until_words(process: subprocess.Popen[str], words: str) -> str:
     """Read lines of stderr up to the first one with these words."""
     assert process.stderr is not None
+    lines = []
     for line in process.stderr:
         if words in line:
             return line
-    raise AssertionError(f"nothing with {words!r} was printed")
+        lines.append(line)
+    raise AssertionError(f"nothing with {words!r} was printed, but {lines}")
 
 
 @pytest.mark.withstands(row="H36")

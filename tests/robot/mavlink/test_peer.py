@@ -25,10 +25,10 @@ from app.robot.mavlink.links import (
 )
 from app.robot.mavlink.peer import VehiclePeer
 from app.robot.mavlink.table import Vehicle, VehicleTable
+from tests.ports import free_port
 from tests.robot.mavlink.diver import TABLE, Diver, diving, wait_until
 from tests.robot.mavlink.mavlink2rest import serving
 from tests.robot.mavlink.vehicle import Ardusub, sailing
-from tests.robot.rtp_camera import free_port
 
 SUBMARINE, ARDUPILOT = mavlink.MAV_TYPE_SUBMARINE, mavlink.MAV_AUTOPILOT_ARDUPILOTMEGA
 ARMED = mavlink.MAV_MODE_FLAG_CUSTOM_MODE_ENABLED | mavlink.MAV_MODE_FLAG_SAFETY_ARMED

@@ -17,6 +17,7 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 from app.robot.mavlink.links import SigningTime, open_link
 from app.robot.mavlink.peer import MOST_RIVALS, VehiclePeer
 from app.robot.mavlink.table import Vehicle, VehicleTable
+from tests.ports import free_port
 from tests.robot.mavlink.diver import TABLE, Diver, wait_until
 from tests.robot.mavlink.test_peer import (
     QUICK,
@@ -27,7 +28,6 @@ from tests.robot.mavlink.test_peer import (
     listening_diver,
     packed,
 )
-from tests.robot.rtp_camera import free_port
 
 HOLD, SURFACE = mavlink.SUB_MODE_ALT_HOLD, mavlink.SUB_MODE_SURFACE
 

@@ -23,11 +23,11 @@ from app.robot import TriggerListener
 from app.robot.mavlink import bridge, links, talk
 from app.robot.mavlink.links import Reader, SigningTime, open_link
 from app.robot.mavlink.table import VehicleTable
+from tests.ports import free_port
 from tests.robot.languages import spoken
 from tests.robot.mavlink.diver import TABLE, Diver, talking, wait_until
 from tests.robot.mavlink.test_peer import QUICK, Socket, beat, packed
 from tests.robot.mavlink.vehicle import sailing
-from tests.robot.rtp_camera import free_port
 
 KEY = bytes(range(32))
 

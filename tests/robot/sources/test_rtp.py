@@ -16,8 +16,9 @@ from app.robot import Frame, Source, SourceLost
 from app.robot.sources import cameras
 from app.robot.sources.cameras import DESCRIPTION
 from app.robot.sources.registry import open_source
+from tests.ports import free_port
 from tests.robot.mjpeg_server import FRAME_SIZE
-from tests.robot.rtp_camera import RtpCamera, free_port
+from tests.robot.rtp_camera import RtpCamera
 
 
 @pytest.fixture
