@@ -138,7 +138,8 @@ export async function drawFlat() {
  */
 export async function drawStroke({ why, result }) {
   const box = byId("stroke-over");
-  box.hidden = true;
+  const show = (/** @type {boolean} */ shown) => box.toggleAttribute("hidden", !shown);
+  show(false);
   const clip = selectedClip();
   if (!why || result?.id !== why.id || result.clip_id !== clip?.id) return;
   if (clip.status !== "done") return; // The poses so far are not given.
@@ -149,7 +150,7 @@ export async function drawStroke({ why, result }) {
   const paths = strokeOver(alignment, poses).map((path) => `M${path.filter(Boolean).join("L")}`);
   const chosen = label === result.label ? "chosen" : "nearest";
   const role = result.expected === null ? chosen : "expected";
-  box.hidden = !paths.length;
+  show(paths.length > 0);
   box.classList.toggle("is-expected", role === "expected");
   const drawn = (/** @type {string} */ kind) =>
     paths.map(
