@@ -97,12 +97,28 @@ def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:
         terminalreporter.write_line(f"left out {count}: {reason}")
 
 
+LINES_OF_ERROR = 16
+_internal_errors: list[str] = []
+
+
+def pytest_internalerror(excrepr: object) -> None:
+    """Keep what went wrong in pytest itself, or in a worker between two tests."""
+    _internal_errors.append(str(excrepr))
+
+
 @pytest.hookimpl(wrapper=True, tryfirst=True)
 def pytest_sessionfinish(session: pytest.Session) -> Iterator[None]:
-    """End with how to bring the browser tests, after pytest's own last line."""
+    """End with the first internal error and how to bring the browser tests, after pytest's line."""
     yield
     reporter = session.config.pluginmanager.get_plugin("terminalreporter")
-    if isinstance(reporter, pytest.TerminalReporter) and _left_out(reporter)[WITHOUT_BROWSER]:
+    if not isinstance(reporter, pytest.TerminalReporter):
+        return
+    # What follows from it is printed after it, and a log is read from its end.
+    for error in _internal_errors[:1]:
+        reporter.write_line("the first internal error ends with:")
+        for line in error.splitlines()[-LINES_OF_ERROR:]:
+            reporter.write_line(line)
+    if _left_out(reporter)[WITHOUT_BROWSER]:
         count, command = _left_out(reporter)[WITHOUT_BROWSER], WITHOUT_BROWSER.partition(": ")[2]
         reporter.write_line(f"{count} browser tests were left out; this brings them: {command}")
 

@@ -44,3 +44,23 @@ def test_a_run_without_chromium_ends_with_the_command_that_brings_it(tmp_path: P
     assert (
         last == f"{count} browser tests were left out; this brings them: apt-get install chromium"
     )
+
+
+@pytest.mark.slow
+def test_a_run_that_a_worker_breaks_ends_with_what_broke_there(tmp_path: Path) -> None:
+    broken = "def pytest_runtest_logfinish(): raise RuntimeError('broken within')\n"
+    (tmp_path / "broken.py").write_text(broken)
+    command = [sys.executable, "-m", "pytest", "-q", "-n", "1", "-p", "broken", "-k", "own_group"]
+    environment = {**os.environ, "PYTHONPATH": str(tmp_path)}
+    environment.pop("PYTEST_XDIST_WORKER", None)
+    run = subprocess.run(
+        [*command, "-p", "no:cacheprovider", __file__],
+        cwd=ROOT,
+        env=environment,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    _, ended, told = run.stdout.rpartition("the first internal error ends with:")
+    assert ended
+    assert "RuntimeError: broken within" in told
