@@ -30,6 +30,6 @@ from app.store.models import (
     RecognitionRecord,
 )
 from app.store.quotas import NO_QUOTA, Quota, QuotaExceeded, QuotaStore, Usage
-from app.store.takes import KnownTake, RecognitionStore, TakeStore, TestedTake, TestSetFull
+from app.store.takes import RecognitionStore, TakeStore, TestedTake, TestSetFull
 from app.store.tokens import NamedToken, Role, SignInStore, TokenFile
 from app.store.uploads import Upload, UploadStore

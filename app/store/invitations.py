@@ -231,7 +231,8 @@ def closed(code: str) -> InvitationClosed:
 def _load(session: Session, invitation_id: str, language_id: str | None) -> Invitation:
     found = session.get(Invitation, invitation_id)
     if found is None or language_id not in (None, found.language_id):
-        raise NotFound(f"there is no invitation {invitation_id!r} to this language")
+        to = "" if language_id is None else " to this language"
+        raise NotFound(f"there is no invitation {invitation_id!r}" + to)
     return found
 
 

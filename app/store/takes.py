@@ -61,9 +61,6 @@ class TestedTake:
     results: tuple[LabelledResult, ...]
 
 
-KnownTake = LabelledTake | PracticeTake
-"""A take whose gesture is known."""
-
 Known = TypeVar("Known", LabelledTake, PracticeTake)
 
 
@@ -168,10 +165,10 @@ class TakeStore(DatabaseStore):
             )
             return list(session.exec(query))
 
-    def known(self, language_id: str) -> list[KnownTake]:
+    def known(self, language_id: str) -> list[LabelledTake | PracticeTake]:
         """Return the takes of test set and practice, the oldest first, each range once."""
         tested = [each.take for each in self.tested(language_id)]
-        takes: list[KnownTake] = [*tested, *self.practised(language_id)]
+        takes: list[LabelledTake | PracticeTake] = [*tested, *self.practised(language_id)]
         once = {(each.clip_id, round(each.start, 2)): each for each in takes}
         return sorted(once.values(), key=lambda each: each.created)
 
@@ -189,11 +186,18 @@ class TakeStore(DatabaseStore):
             session.add(take)
 
     def keep(self, result: LabelledResult, expected: str) -> bool:
-        """Store a result and remove old ones; False if the take is removed or has another label."""
+        """Store a result and remove old ones, or the result's recognition if it is not wanted.
+
+        Return False if the take is removed or has another label.
+        """
         with self._database.writing() as session:
             take = session.get(LabelledTake, result.take_id)
             if take is None or take.expected != expected:
+                _drop_recognition(session, result)
                 return False
+            former = session.get(LabelledResult, (result.take_id, result.revision))
+            if former is not None and former.recognition_id != result.recognition_id:
+                _drop_recognition(session, former)
             session.merge(result)
             old = session.exec(
                 select(LabelledResult)
@@ -239,6 +243,10 @@ def _forget(session: Session, take_id: str) -> None:
 def _drop(session: Session, result: LabelledResult) -> None:
     """Remove a result with its recognition."""
     session.delete(result)
+    _drop_recognition(session, result)
+
+
+def _drop_recognition(session: Session, result: LabelledResult) -> None:
     if result.recognition_id is not None:
         session.execute(
             delete(RecognitionRecord).where(col(RecognitionRecord.id) == result.recognition_id)

@@ -42,6 +42,20 @@ def again(take: LabelledTake, **changes: object) -> LabelledTake:
     return LabelledTake(**(take.model_dump(exclude={"id", "created"}) | changes))
 
 
+def recognition_of(take: LabelledTake, revision: int = 1) -> RecognitionRecord:
+    """Return a recognition of a take that is not stored yet."""
+    return RecognitionRecord(
+        clip_id=take.clip_id,
+        language_id=take.language_id,
+        revision=revision,
+        start=0.5,
+        end=2.5,
+        profile="full",
+        expected="circle",
+        result="{}",
+    )
+
+
 def test_a_range_is_in_the_set_once_with_its_newest_label(
     store: TakeStore, take: LabelledTake
 ) -> None:
@@ -59,18 +73,7 @@ def test_results_are_kept_newest_first_and_only_the_newest(
     (kept,) = store.add([take])
     recognitions = RecognitionStore(database)
     for revision in range(1, KEPT_RESULTS + 3):
-        record = recognitions.add(
-            RecognitionRecord(
-                clip_id=take.clip_id,
-                language_id=take.language_id,
-                revision=revision,
-                start=0.5,
-                end=2.5,
-                profile="full",
-                expected="circle",
-                result="{}",
-            )
-        )
+        record = recognitions.add(recognition_of(take, revision))
         result = LabelledResult(take_id=kept.id, revision=revision, recognition_id=record.id)
         assert store.keep(result, "circle")
     (tested,) = store.tested(take.language_id)
@@ -86,6 +89,20 @@ def test_a_result_for_another_label_is_not_kept(store: TakeStore, take: Labelled
     store.remove(LabelledTake, take.language_id, kept.id)
     assert not store.keep(LabelledResult(take_id=kept.id, revision=1), "line")
     assert store.tested(take.language_id) == []
+
+
+def test_a_recognition_stays_only_with_its_result(
+    store: TakeStore, database: Database, take: LabelledTake
+) -> None:
+    (kept,) = store.add([take])
+    recognitions = RecognitionStore(database)
+    first, second, unwanted = (recognitions.add(recognition_of(take)).id for _ in range(3))
+    for recognition in (first, second):
+        result = LabelledResult(take_id=kept.id, revision=1, recognition_id=recognition)
+        assert store.keep(result, "circle")
+    result = LabelledResult(take_id=kept.id, revision=1, recognition_id=unwanted)
+    assert not store.keep(result, "line")
+    assert [each.id for each in recognitions.all(language_id=take.language_id, limit=9)] == [second]
 
 
 def test_a_take_of_another_language_is_not_found(

@@ -1,8 +1,7 @@
 """Vehicle orders: sends the steps of one mission until each is proven done, without a network.
 
 `OrderDesk` holds the active order. There is no queue: a newer mission replaces it, so that no
-action is done long after its request. `ModeWatch` notices a pilot who sets
-another mode, and wins.
+action is done long after its request. `ModeWatch` notices a pilot who sets another mode, and wins.
 """
 
 from __future__ import annotations

@@ -351,9 +351,8 @@ def wait_for_packets(
     """
     counts: dict[str, int] = {}
     until = clock.monotonic() + seconds
-    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as listening:
+    with _listen(port, local) as listening:
         try:
-            listening.bind((local, port))
             if group is not None:
                 member = struct.pack("4sl", socket.inet_aton(group), socket.INADDR_ANY)
                 listening.setsockopt(socket.IPPROTO_IP, socket.IP_ADD_MEMBERSHIP, member)
@@ -368,9 +367,10 @@ def wait_for_packets(
         except TimeoutError:
             pass
         except OSError as error:
+            of = f" of group {group}" if group else ""
             raise SourceError(
-                f"UDP port {port} cannot be listened on ({error.strerror or error}); another "
-                "program may have it, such as a ground station: stop it, or send to another port"
+                f"packets{of} cannot be received on UDP port {port} ({error.strerror or error}); "
+                "is this machine in the camera's network?"
             ) from error
     by = f" from {sender}" if sender else ""
     raise SourceError(
@@ -381,15 +381,22 @@ def wait_for_packets(
 
 def _require_next(port: int, local: str) -> None:
     """Check that the port after that of RTP is free: FFmpeg listens there for RTCP."""
-    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as listening:
-        try:
-            listening.bind((local, port + 1))
-        except (OSError, OverflowError) as error:
-            reason = getattr(error, "strerror", None) or error
-            raise SourceError(
-                f"UDP port {port + 1} cannot be listened on ({reason}); RTP needs it beside "
-                f"{port}: stop the program that has it, or send to another port"
-            ) from error
+    _listen(port + 1, local, f", which RTP needs beside {port},").close()
+
+
+def _listen(port: int, local: str, why: str = "") -> socket.socket:
+    """Return a socket that listens on a UDP port; of one that is taken tell what to do."""
+    listening = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+    try:
+        listening.bind((local, port))
+    except (OSError, OverflowError) as error:
+        listening.close()
+        raise SourceError(
+            f"UDP port {port}{why} cannot be listened on "
+            f"({getattr(error, 'strerror', None) or error}); another program may have it, such as "
+            "a ground station: stop it, or send to another port"
+        ) from error
+    return listening
 
 
 def _sort_host(host: str | None) -> tuple[str | None, str, str]:

@@ -2,7 +2,7 @@
 // server sees in it, and what is wrong with it, with a way out.
 
 import { h } from "../core/dom.js";
-import { html, nothing, optionsOf, render } from "../templates.js";
+import { html, nothing, optionsOf } from "../templates.js";
 import { isMirrored } from "./mirror.js";
 import { drawSeen, overlay } from "./pose-overlay.js";
 import { countDown, record } from "./recording.js";
@@ -33,22 +33,10 @@ import { watch } from "./watching.js";
  * @param {Trouble} trouble
  * @param {() => unknown} again
  */
-const words = ({ title, text }, again) =>
+export const tellTrouble = ({ title, text }, again) =>
   html`<b>${title}</b>
     <p>${text}</p>
     <button type="button" @click=${again}>Try again</button>`;
-
-/**
- * Show what is wrong in a box; null hides it.
- *
- * @param {HTMLElement} box
- * @param {Trouble | null} trouble
- * @param {() => unknown} again Called by the button that tries again.
- */
-export function drawTrouble(box, trouble, again) {
-  box.hidden = !trouble;
-  render(trouble ? words(trouble, again) : nothing, box);
-}
 
 /**
  * Make a camera. `draw()` draws its view anew; `instead` is what can be done without a camera;
@@ -222,7 +210,7 @@ export function makeCamera({ instead, draw, start, stop }) {
           ?hidden=${share === null}
         ></progress>
         <div class="camera-problem" role="alert" ?hidden=${!trouble}>
-          ${trouble ? words(trouble, start) : nothing}
+          ${trouble ? tellTrouble(trouble, start) : nothing}
         </div>
       </div>`;
     },

@@ -1,12 +1,13 @@
 // The viser iframe: one workspace per tab, kept over reloads.
 
-import { drawTrouble } from "../camera/camera.js";
+import { tellTrouble } from "../camera/camera.js";
 import * as api from "../core/api.js";
 import { tabStore } from "../core/browser-store.js";
 import { byId } from "../core/dom.js";
 import { listenToKeys } from "../core/key-bindings.js";
 import { state } from "../core/state.js";
 import { attempt, complain } from "../core/toasts.js";
+import { nothing, render } from "../templates.js";
 import { followClock, frameShown, rememberFrame, wasCut } from "./playback.js";
 import { drawByPage, drawByViser, isFlat } from "./clip-picture.js";
 
@@ -102,7 +103,11 @@ function watch(frame, late) {
 }
 
 /** @param {Trouble | null} trouble */
-const explain = (trouble) => drawTrouble(byId("lab-problem"), trouble, restart);
+function explain(trouble) {
+  const box = byId("lab-problem");
+  box.hidden = !trouble;
+  render(trouble ? tellTrouble(trouble, restart) : nothing, box);
+}
 
 /**
  * Draw the picture by the page, with the reason, and a button that tries viser again.
