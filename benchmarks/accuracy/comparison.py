@@ -249,7 +249,7 @@ def compare_on_set(
     methods: tuple[str, ...], most: int, trajectories: Path, recorded: RecordedSet, quick: bool
 ) -> Iterator[Figure]:
     """Draw languages of a set, and yield what every method says of its takes."""
-    count, queries = (min(most, 3), 15) if quick else (most, 30)
+    count, queries = (min(most, 1 if methods == COSTLY else 3), 15) if quick else (most, 30)
     if quick and methods != COSTLY:  # the draws are others than those of `results.json`
         methods = (*METHODS, *methods)
     makers = find_methods(dict.fromkeys((YARDSTICK, *methods)), all_of_them=not quick)
