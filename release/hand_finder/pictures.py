@@ -90,11 +90,23 @@ def read_joints(folder: Path) -> list[Hands]:
     """Return the drawn stills of a folder with the joints of their hands, in the order drawn."""
     with np.load(folder / "joints.npz") as kept:
         rows = zip(kept["names"].tolist(), kept["joints"], kept["seen"], strict=True)
-        return [Hands(_read_rgb(folder / "images" / name), *row) for name, *row in rows]
+        return [Hands(read_rgb(folder / "images" / name), *row) for name, *row in rows]
 
 
 def read_pictures(folder: Path, without: Sequence[str] = ()) -> list[Picture]:
     """Return the pictures of a folder, without those whose names begin with one of `without`."""
+    return [
+        _read(folder / "images" / name, kinds["Hand"], kinds["Unclear"])
+        for name, kinds in read_boxes(folder).items()
+        if not name.startswith(tuple(without))
+    ]
+
+
+def read_boxes(folder: Path) -> dict[str, dict[str, npt.NDArray[np.float64]]]:
+    """Return the boxes of a folder's pictures by name, which are sorted, and by kind.
+
+    ``Hand`` and ``Unclear`` are there for each: ``(N, 8)`` as in `Picture`, in its own pixels.
+    """
     boxes: dict[str, dict[str, list[list[float]]]] = {}
     with (folder / "boxes.csv").open(newline="") as file:
         for row in csv.DictReader(file):
@@ -103,26 +115,29 @@ def read_pictures(folder: Path, without: Sequence[str] = ()) -> list[Picture]:
                 kinds[row["what"]].append(
                     [float(row.get(edge) or "nan") for edge in (*EDGES, *JOINTS)]
                 )
-    return [
-        _read(folder / "images" / name, kinds["Hand"], kinds["Unclear"])
+    return {
+        name: {kind: np.array(rows).reshape(-1, 8) for kind, rows in kinds.items()}
         for name, kinds in sorted(boxes.items())
-        if not name.startswith(tuple(without))
-    ]
+    }
 
 
-def _read_rgb(path: Path) -> npt.NDArray[np.uint8]:
+def read_rgb(path: Path) -> npt.NDArray[np.uint8]:
+    """Read a picture as RGB, ``(height, width, 3)``.
+
+    Raises
+    ------
+    FileNotFoundError
+        When there is none, or it is no picture.
+
+    """
     bgr = cv2.imread(str(path))
     if bgr is None:
         raise FileNotFoundError(f"{path} is no picture")
     return np.asarray(cv2.cvtColor(bgr, cv2.COLOR_BGR2RGB), np.uint8)
 
 
-def _read(path: Path, hands: list[list[float]], unclear: list[list[float]]) -> Picture:
-    image = _read_rgb(path)
+def _read(path: Path, hands: npt.NDArray[np.float64], unclear: npt.NDArray[np.float64]) -> Picture:
+    image = read_rgb(path)
     scale = min(LONGEST_SIDE / max(image.shape[:2]), 1.0)
     small = cv2.resize(image, None, fx=scale, fy=scale, interpolation=cv2.INTER_AREA)
-    return Picture(
-        np.asarray(small, np.uint8),
-        np.array(hands).reshape(-1, 8) * scale,
-        np.array(unclear).reshape(-1, 8) * scale,
-    )
+    return Picture(np.asarray(small, np.uint8), hands * scale, unclear * scale)

@@ -34,6 +34,16 @@ POSES = 2
 REACH = (0.2, 0.57)
 """Metres from the shoulder to a wrist, for an arm of `posture.REFERENCE_ARM`."""
 
+DISTANCE, NEAR_DISTANCE, FAR_DISTANCE = (0.65, 3.4), (0.4, 0.8), (3.0, 11.0)
+"""Metres from the camera to a diver, to one of whom it shows little but an arm, and to one who as a
+whole looks like a hand: seen from any side."""
+
+NEAR, FAR = 0.2, 0.2
+"""Shares of the stills that show such an arm, and such a diver."""
+
+AT_FACE = (np.array([0.12, -0.22, 0.1]), np.array([0.1, 0.05, 0.08]))
+"""Place of a wrist whose hand is beside the face or at the regulator, and its spread, metres."""
+
 WRIST, MIDDLE_KNUCKLE = 0, 9
 """Of MediaPipe's 21 points."""
 
@@ -84,12 +94,16 @@ def draw_stills(seed: int, salutes: float = 0.0) -> list[Still]:
     water = _water(random)
     diver = Diver({}, _suit(random), _kit(random))
     body = _dress(_bodies()[random.integers(len(DIVERS))], random, gloved=bool(diver.suit.gloves))
-    distance = float(np.exp(random.uniform(np.log(0.65), np.log(3.4))))
+    near, far = random.random() < NEAR, random.random() < FAR
+    metres = FAR_DISTANCE if far else NEAR_DISTANCE if near else DISTANCE
+    distance = float(np.exp(random.uniform(*np.log(metres))))
+    beside = 0.62 if near else 0.42
+    turn = 180 if far else 50
     view = View(
         distance,
-        random.uniform(-50, 50),
+        random.uniform(-turn, turn),
         random.uniform(-25, 25),
-        (random.uniform(-0.42, 0.42) * distance, random.uniform(-0.42, 0.3) * distance),
+        (random.uniform(-beside, beside) * distance, random.uniform(-0.42, 0.3) * distance),
     )
     light = float(random.choice([random.uniform(0.12, 0.45), random.uniform(0.45, 1.2)]))
     bubbles = breath(random, random.uniform(-2, 0), int(random.integers(0, 60)))
@@ -227,13 +241,16 @@ def _stance(random: np.random.Generator) -> BodyMotion:
 
 
 def _arm(random: np.random.Generator, salutes: float) -> ArmTarget:
-    """Choose where one arm is: a quarter hang, the others are anywhere in reach."""
+    """Choose where one arm is: a quarter hang, some are at the face, the others anywhere."""
     shapes = list(HAND_SHAPES.values())
     one, other = (shapes[random.integers(len(shapes))] for _ in range(2))
     share = random.uniform()
     fingers = share * one + (1 - share) * other
-    if random.random() < 0.25:
+    place = random.random()
+    if place < 0.25:
         wrist = REST.wrist + random.normal(0, 0.06, 3)
+    elif place < 0.4:
+        wrist = random.normal(*AT_FACE)
     else:
         while True:
             wrist = random.uniform([-0.5, -0.55, -0.5], [0.3, 0.02, 0.5])
