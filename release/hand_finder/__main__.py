@@ -1,4 +1,4 @@
-"""Makes the models of divers' hands: `python -m release.hand_finder draw|teach|landmarks`."""
+"""Makes the models of divers' hands: `python -m release.hand_finder draw|teach|landmarks|judge`."""
 
 from __future__ import annotations
 
@@ -32,12 +32,18 @@ def main() -> None:
     teach.add_argument("--seed", type=int, default=0, help="of the crops")
     teach.add_argument("--whole", action="store_true", help="teach the first stage too")
     teach.add_argument("--output", type=Path, required=True, help="the ONNX file to write")
+    judge = steps.add_parser("judge", help="teach the model of gloved hands to judge what is seen")
+    judge.add_argument("model", type=Path, help="the ONNX file to begin with")
+    judge.add_argument("folders", type=Path, nargs="+", help="pictures with boxes.csv")
+    judge.add_argument("--output", type=Path, required=True, help="the ONNX file to write")
     arguments = parser.parse_args()
     if arguments.step == "draw":
         seeds = range(arguments.seed, arguments.seed + arguments.divers)
         write_pictures(arguments.folder, seeds, arguments.salutes)
     elif arguments.step == "landmarks":
         _teach_landmarks(arguments)
+    elif arguments.step == "judge":
+        _teach_judgement(arguments)
     else:
         _teach(arguments)
 
@@ -56,6 +62,16 @@ def _teach_landmarks(arguments: argparse.Namespace) -> None:
         seed=arguments.seed,
         tips=arguments.tips,
     )
+
+
+def _teach_judgement(arguments: argparse.Namespace) -> None:
+    """Look at the pictures of folders where that was not done yet, and learn from all."""
+    from release.hand_finder.judge import teach_judgement, write_looks
+
+    for seed, folder in enumerate(arguments.folders):
+        if not (folder / "looks.npz").exists():
+            write_looks(folder, arguments.model, seed)
+    teach_judgement(arguments.model, arguments.folders, arguments.output)
 
 
 def _teach(arguments: argparse.Namespace) -> None:

@@ -21,6 +21,7 @@ from app.recognition.estimation.landmark_models.body_model import POSE_SIGNATURE
 from app.recognition.estimation.landmark_models.detector import PALM_LAYOUT, PERSON_LAYOUT, Detector
 from app.recognition.estimation.landmark_models.diver_hands import DiverHands
 from app.recognition.estimation.landmark_models.hand_model import (
+    GLOVED_SIGNATURE,
     HAND_SIGNATURE,
     HandFinder,
     HandModel,
@@ -171,7 +172,7 @@ def hand_tracker(
     finder, gloves = (finder_path(), gloves_path()) if search == "pose" else (None, None)
     return HandTracker(
         palms,
-        HandModel(model, open_taught(gloves, HAND_SIGNATURE) if gloves else None),
+        HandModel(model, open_taught(gloves, GLOVED_SIGNATURE) if gloves else None),
         search,
         HandFinder(Detector(open_taught(finder, PALM_LAYOUT.signature), PALM_LAYOUT))
         if finder

@@ -25,6 +25,7 @@ from app.recognition.errors import EstimatorError
 from app.recognition.estimation.estimator import PoseEstimator, check_image
 from app.recognition.estimation.factory import finds_hands
 from app.recognition.estimation.landmark_models.body_model import SURE
+from app.recognition.estimation.landmark_models.hand_model import LEAST_PRESENCE
 from app.recognition.poses.frame import FrameLandmarks, Image
 from app.recognition.poses.sequence import FloatArray
 
@@ -214,7 +215,7 @@ class WaterChoice:
     Parameters
     ----------
     hands
-        Whether the estimator finds hands, so that a frame without any is in doubt.
+        Whether the estimator finds hands, so that a frame without a certain one is in doubt.
 
     """
 
@@ -269,7 +270,8 @@ class WaterChoice:
         return True
 
     def _is_doubtful(self, found: FrameLandmarks) -> bool:
-        if found.body is None or (self._sought and not found.hands):
+        seen = any(hand.score >= LEAST_PRESENCE for hand in found.hands)
+        if found.body is None or (self._sought and not seen):
             return True
         # A new body was examined once, off the centre of its region: its score means little.
         return self._had_body and found.body.score < SURE

@@ -75,7 +75,7 @@ HAND_FINDER: Final = InstalledFile(
 GLOVED_HANDS: Final = InstalledFile(
     "hand_landmark_gloved",
     "hand_landmark_gloved.onnx",
-    "5c8a7e31c422f48d5ab0d476bf657d7fb18708feeeb8eb60d723f9800bfebd59",
+    "69c603eaa3227fc48eb80c42f958f83c6338fb37047e65a2d9b9f4d1307dfaab",
 )
 """The landmark model of gloved hands, in the same way."""
 

@@ -44,7 +44,7 @@ def test_nothing_is_corrected_and_nothing_examined_where_body_and_hand_are_seen(
 
 
 def test_the_first_frame_with_a_doubt_is_examined_at_once() -> None:
-    for doubtful in (NOBODY, seen(0.99)):
+    for doubtful in (NOBODY, seen(0.99), seen(0.99, 0.3)):
         assert WaterChoice().needs_examination(doubtful)
 
 

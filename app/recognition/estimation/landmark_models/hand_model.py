@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
-from typing import Final
+from typing import Final, TypeGuard
 
 import numpy as np
 from typing_extensions import Self
@@ -45,11 +45,35 @@ HAND_SIGNATURE: Final = Signature(
 LEAST_PRESENCE: Final = 0.5
 """Least probability of a hand; MediaPipe's default minimum presence confidence."""
 
+GLOVED_SIGNATURE: Final = Signature(INPUT_SIZE, outputs=(*HAND_SIGNATURE.outputs, (1, 1)))
+"""The same of the model of gloved hands, and its judgement: the logarithm of the odds that what a
+landmark model has seen is a hand."""
+
 GLOVED_PRESENCE: Final = 0.8
-"""The same of the model of gloved hands, which sees more, and more that is none."""
+"""Least probability of a hand for the model of gloved hands, which sees more, and more that is
+none."""
+
+SURE: Final = 0.8
+"""Presence from which MediaPipe's model is certain; where there is no other model, a new hand needs
+as much."""
+
+OF_SCORE: Final = 3.7
+"""What a model's own score from 0 to 1 adds to the judgement: as much as the judgement itself tells
+(ratio of their deviations in a third of the photographs)."""
+
+BELIEVED: Final = 1.2
+"""Least judgement of a hand whose fingers are seen, with its presence: chosen on the curve of hands
+found against strays (`benchmarks/studies/hands-and-water.md`)."""
+
+PLACE_BELIEVED: Final = 0.0
+"""The same for a place alone, with the finder's score."""
 
 GLOVED_SURE: Final = 0.995
-"""Presence from which that model finds a new hand."""
+"""Presence from which the model of gloved hands finds a new hand."""
+
+PLACE_TURNS: Final = 4
+PLACE_SCALE: Final = 1.4
+"""Number of turns in which a place is judged, and side of the region over that of its box."""
 
 WORTH_A_SECOND_LOOK: Final = 0.1
 """Presence from which an arm's region is corrected by the landmarks in it and evaluated again: a
@@ -87,6 +111,8 @@ class SeenHand:
         Time of the last look for the fingers of a hand of which only the place is seen.
     gloved
         Whether the model of gloved hands sees its landmarks.
+    judged, doubted
+        In how many of its frames it was judged, and not believed in.
 
     """
 
@@ -98,6 +124,8 @@ class SeenHand:
     box: Region | None = None
     looked: float = -np.inf
     gloved: bool = False
+    judged: int = 1
+    doubted: int = 0
 
     @classmethod
     def at(cls, place: HandPlace, looked: float = -np.inf) -> Self:
@@ -143,22 +171,63 @@ class HandModel:
         least = GLOVED_PRESENCE if gloved else LEAST_PRESENCE
         return seen if seen is not None and seen.hand.score >= least else None
 
-    def look_twice(self, image: Image, region: Region, *, gloved: bool = False) -> SeenHand | None:
-        """Return the hand near a `region`, which need not fit it well.
+    def find(self, image: Image, region: Region, *, gloved: bool = False) -> SeenHand | None:
+        """Return the new hand near a `region`, which need not fit it well, None without one.
 
-        If the first run finds something, a second one at the region of its landmarks decides.
+        What MediaPipe's model sees is judged. The judgement cannot tell among what only the other
+        model sees: there its presence decides.
+        """
+        least = GLOVED_SURE if gloved else WORTH_A_SECOND_LOOK
+        seen = self.see_twice(image, region, gloved=gloved, least=least)
+        return seen if seen is not None and (gloved or self.believes(image, seen)) else None
+
+    def see_twice(
+        self, image: Image, region: Region, *, gloved: bool, least: float
+    ) -> SeenHand | None:
+        """Return what a model sees near a `region`; its own region is usable.
+
+        If the first run sees something, a second one at the region of its landmarks tells its
+        presence.
         """
         first = self._landmarks(image, region, gloved=gloved)
-        if first is None or not first.hand.score >= WORTH_A_SECOND_LOOK:
+        if not _has(first, WORTH_A_SECOND_LOOK):
             return None
-        return self.look(image, first.following, gloved=gloved) if first.following.usable else None
+        seen = self._landmarks(image, first.following, gloved=gloved)
+        return seen if _has(seen, least) else None
+
+    def believes(self, image: Image, seen: SeenHand) -> bool:
+        """Return whether MediaPipe's landmarks are believed to be a hand's.
+
+        Without the model of gloved hands, which judges their region, their presence decides.
+        """
+        if self._gloved is None:
+            return seen.hand.score >= SURE
+        judgement = self._judge(self._gloved, image, seen.following)
+        return judgement + OF_SCORE * seen.hand.score >= BELIEVED
+
+    def believes_place(self, image: Image, place: HandPlace) -> bool:
+        """Return whether a place is believed to be a hand's, whichever way it points."""
+        if self._gloved is None:
+            return True
+        box = replace(place.box, side=PLACE_SCALE * place.box.side)
+        judgements = [
+            self._judge(self._gloved, image, replace(box, rotation=turn))
+            for turn in np.linspace(0, 2 * np.pi, PLACE_TURNS, endpoint=False)
+        ]
+        return bool(np.mean(judgements) + OF_SCORE * place.hand.score >= PLACE_BELIEVED)
+
+    @staticmethod
+    def _judge(session: ModelSession, image: Image, region: Region) -> float:
+        region.crop(image, INPUT_SIZE, REPLICATED_BORDER, out=session.pixels)
+        *_, judgement = session.run()
+        return float(judgement[0, 0])
 
     def _landmarks(self, image: Image, region: Region, *, gloved: bool) -> SeenHand | None:
         session = self._gloved if gloved else self._session
         if session is None:
             return None
         region.crop(image, INPUT_SIZE, REPLICATED_BORDER, out=session.pixels)
-        raw, presence, right = session.run()
+        raw, presence, right, *_ = session.run()
         points = raw.reshape(len(HAND_LANDMARKS), 3)[:, :2].astype(np.float64)
         xy = region.to_image(points, INPUT_SIZE)
         # The model was trained on mirrored selfies and renamed since: in an unmirrored image
@@ -166,6 +235,11 @@ class HandModel:
         side: Side = "right" if right[0, 0] > 0.5 else "left"
         hand = Hand(xy, side, min(float(presence[0, 0]), 1.0))
         return SeenHand(hand, region_of_hand(xy), gloved=gloved)
+
+
+def _has(seen: SeenHand | None, presence: float) -> TypeGuard[SeenHand]:
+    """Return whether a hand of this presence was seen, with a usable region."""
+    return seen is not None and seen.following.usable and seen.hand.score >= presence
 
 
 def find_duplicates(one: Hand, other: Hand) -> bool:

@@ -25,7 +25,9 @@ from app.recognition.estimation.landmark_models.arms import (
 )
 from app.recognition.estimation.landmark_models.detector import Detector
 from app.recognition.estimation.landmark_models.hand_model import (
+    GLOVED_PRESENCE,
     GLOVED_SURE,
+    SURE,
     HandFinder,
     HandModel,
     HandPlace,
@@ -52,15 +54,8 @@ LONG_LOST, LOST_FACTOR = 8, 2
 """Searches in vain after which the forearm is searched less often by this factor: the time goes
 to the finder."""
 
-SURE: Final = 0.8
-"""Presence from which a hand is certain. Below it, most results at a forearm's end, or of the palm
-detector away from the body's arms, are no hands: palms are then detected even with two tracked."""
-
-PLACE_SCORE: Final = 0.5
+PROPOSED_SCORE: Final = 0.4
 """Least score of a place of a hand that is new."""
-
-LOOKED_SCORE: Final = 0.4
-"""Least score of a place at which an examination looks for fingers; without them it is none."""
 
 KEPT_SCORE: Final = 0.3
 """Least score of a place at which a hand was in the frame before."""
@@ -78,9 +73,6 @@ hands of which only the place is seen."""
 FINGERS_SECONDS: Final = 0.3
 """Seconds between two looks for the fingers of a hand of which only the place is seen."""
 
-FINGERS_PRESENCE: Final = 0.8
-"""Least presence of a hand whose fingers are seen at a place."""
-
 FINGERS_SCALE: Final = 1.1
 """Side of the region in which fingers are looked for, over the side of the place's box."""
 
@@ -91,11 +83,14 @@ examination tries all, tracking the next one at each look."""
 GLOVE_SCORE: Final = 0.6
 """Least score of a place at which the model of gloved hands looks."""
 
+AGREEING_TURNS: Final = 5
+"""Least number of `TURNS` in which the model of gloved hands must see a hand at a place."""
+
+MOST_JUDGED: Final = 3
+"""First frames of a hand in which it is judged; it stays with the word of most of them."""
+
 GLOVE_SCALE: Final = 1.3
 """Side of the region in which it looks, over that of the place's box."""
-
-AGREEING_TURNS: Final = 5
-"""Least number of `TURNS` in which it must see a hand at a place."""
 
 HandSearch = Literal["pose", "palm"]
 """Search for untracked hands: at the ends of the body's arms and, every few frames, with the palm
@@ -138,9 +133,9 @@ class HandTracker:
         finder: HandFinder | None = None,
     ) -> None:
         self._palms = palms
-        self._model = model
+        self.model = model
         self._search = search
-        self._finder = finder
+        self.finder = finder
         self._spares = False
         self._noted: deque[SeenHand] = deque(maxlen=MOST_NOTED)
         self.reset()
@@ -163,14 +158,15 @@ class HandTracker:
 
     def renew(self) -> Self:
         """Return a tracker with the same models that has seen nothing yet."""
-        return type(self)(self._palms, self._model, self._search, self._finder)
+        return type(self)(self._palms, self.model, self._search, self.finder)
 
     def examine(self, image: Image, bodies: Sequence[Body]) -> FrameLandmarks:
         """Return the hands in `image` alone; tracking is left as it is until `adopt`."""
         alone = self.renew()
         found = alone.complete(image, alone.follow(image), bodies)
-        places = alone._find_places(image, parts_of(image), LOOKED_SCORE)
-        seen = [alone._look_for_fingers(image, place, TURNS) for place in places[:1]]
+        places = alone._find_places(image, parts_of(image))
+        # Without the model of gloves: under some correction it always sees one.
+        seen = [alone._look_for_fingers(image, place, TURNS, gloved=False) for place in places[:1]]
         self._noted.extend((*alone._tracked, *(one for one in seen if one is not None)))
         return found
 
@@ -213,81 +209,97 @@ class HandTracker:
     def _look_again(self, image: Image, tracked: SeenHand, time: float) -> SeenHand | None:
         """Return a tracked hand in the next frame; without its fingers where these are lost."""
         if tracked.shows_fingers:
-            seen = self._model.look(image, tracked.following, gloved=tracked.gloved)
+            seen = self.model.look(image, tracked.following, gloved=tracked.gloved)
             if seen is not None:
-                return replace(seen, box=tracked.box)
-        if tracked.box is None or self._finder is None:
+                return self._judge_again(image, tracked, replace(seen, box=tracked.box))
+        if tracked.box is None or self.finder is None:
             return None
         box = replace(tracked.box, x=tracked.following.x, y=tracked.following.y)
-        place = self._finder.look(image, box, KEPT_SCORE)
+        place = self.finder.look(image, box, KEPT_SCORE)
         if place is None:
             return None
         if time - tracked.looked < FINGERS_SECONDS:
             return SeenHand.at(place, tracked.looked)
         return self._look_for_fingers(image, place) or SeenHand.at(place, time)
 
-    def _look_for_fingers(self, image: Image, place: HandPlace, turns: int = 1) -> SeenHand | None:
+    def _judge_again(self, image: Image, tracked: SeenHand, seen: SeenHand) -> SeenHand | None:
+        """Return a hand with its judgement; None where most of its frames speak against it."""
+        judged, doubted = tracked.judged, tracked.doubted
+        lasting = seen.gloved or self._search == "palm" or not seen.following.usable
+        if not lasting and judged < MOST_JUDGED:
+            judged += 1
+            doubted += not self.model.believes(image, seen)
+        believed = doubted <= MOST_JUDGED // 2
+        return replace(seen, judged=judged, doubted=doubted) if believed else None
+
+    def _look_for_fingers(
+        self, image: Image, place: HandPlace, turns: int = 1, *, gloved: bool = True
+    ) -> SeenHand | None:
         """Return the hand at a place with its landmarks, None where they are not seen."""
         box = place.box
         for _ in range(turns):
             self._turned = (self._turned + 1) % TURNS
             rotation = box.rotation + self._turned * 2 * np.pi / TURNS
             region = replace(box, side=FINGERS_SCALE * box.side, rotation=rotation)
-            seen = self._model.look_twice(image, region)
-            if seen is None or seen.hand.score < FINGERS_PRESENCE:
-                continue
-            if _known(seen, [SeenHand.at(place)]):
+            seen = self.model.find(image, region)
+            if seen is not None and _known(seen, [SeenHand.at(place)]):
                 return replace(seen, box=box)
-        # Not in an examination: under some correction gloves are always seen.
-        return self._look_for_glove(image, place) if turns == 1 else None
+        return self._look_for_glove(image, place) if gloved else None
 
     def _look_for_glove(self, image: Image, place: HandPlace) -> SeenHand | None:
         """Return the gloved hand at a place, None where it is not seen in most turns.
 
         Where fingers are seen already, the others are no gloves.
         """
-        fingers = any(one.shows_fingers for one in self._tracked)
+        fingers = any(
+            one.shows_fingers and not one.gloved and one.hand.score >= SURE for one in self._tracked
+        )
         if fingers or place.hand.score < GLOVE_SCORE:
             return None
         side, turns = GLOVE_SCALE * place.box.side, np.linspace(0, 2 * np.pi, TURNS, endpoint=False)
         regions = [
             replace(place.box, side=side, rotation=place.box.rotation + turn) for turn in turns
         ]
-        looks = [self._model.look_twice(image, region, gloved=True) for region in regions]
+        looks = [
+            self.model.see_twice(image, region, gloved=True, least=GLOVED_PRESENCE)
+            for region in regions
+        ]
         seen = [one for one in looks if one and _known(one, [SeenHand.at(place)])]
         best = max(seen, key=lambda one: one.hand.score, default=None)
         if best is None or len(seen) < AGREEING_TURNS or best.hand.score < GLOVED_SURE:
             return None
         return replace(best, box=place.box)
 
-    def _find_places(
-        self, image: Image, regions: Iterable[Region], least: float
-    ) -> list[HandPlace]:
-        """Return the places that the finder finds in regions with a score from `least`."""
-        if self._finder is None:
+    def _find_places(self, image: Image, regions: Iterable[Region]) -> list[HandPlace]:
+        """Return the places that the finder proposes in regions, best first."""
+        if self.finder is None:
             return []
-        places = self._finder.search(image, regions, least)
+        places = self.finder.search(image, regions, PROPOSED_SCORE)
         fitting = [one for one in places if all(one.fits(body) for body in self._bodies)]
         return fitting[:MOST_PLACES]
 
     def _search_places(self, image: Image, regions: Iterable[Region]) -> list[SeenHand]:
         """Return the hands, with or without fingers, that the finder finds in regions."""
-        return [
-            self._look_for_fingers(image, place) or SeenHand.at(place)
-            for place in self._find_places(image, regions, PLACE_SCORE)
-        ]
+        found = []
+        for place in self._find_places(image, regions):
+            believed = self.model.believes_place(image, place)
+            seen = self._look_for_fingers(image, place, gloved=believed)
+            if seen is not None or believed:
+                found.append(seen or SeenHand.at(place))
+        return found
 
     def _detect(self, image: Image) -> Iterator[SeenHand]:
         """Yield untracked hands: every few frames, by the palm detector or the finder in turn."""
         if not self._is_due():
             return
         self._turn += 1
-        if self._finder is not None and not self._tracked and self._turn % 2 == 0:
+        if self.finder is not None and not self._tracked and self._turn % 2 == 0:
             parts = parts_of(image)
             yield from self._search_places(image, [parts[self._turn // 2 % len(parts)]])
             return
+        look = self.model.find if self._search == "pose" else self.model.look
         for region in self._detect_palms(image):
-            seen = self._model.look(image, region)
+            seen = look(image, region)
             if seen is not None:
                 yield seen
 
@@ -414,16 +426,12 @@ class HandTracker:
         region = region_of_wrist(body, side)
         if region is not None:
             for gloved in (False, True) if with_glove and not is_doubtful(body, side) else (False,):
-                seen = self._model.look_twice(image, region, gloved=gloved)
-                if seen is None or (gloved and seen.hand.score < GLOVED_SURE):
-                    continue
-                if wrist_distance(seen.hand, body, side) <= REACH:
+                seen = self.model.find(image, region, gloved=gloved)
+                if seen is not None and wrist_distance(seen.hand, body, side) <= REACH:
                     return seen
         for region in regions_of_forearm(body, side) if with_forearm else ():
-            seen = self._model.look_twice(image, region)
-            if seen is None or seen.hand.score < SURE:
-                continue
-            if wrist_distance(seen.hand, body, side) <= FOREARM_REACH:
+            seen = self.model.find(image, region)
+            if seen is not None and wrist_distance(seen.hand, body, side) <= FOREARM_REACH:
                 return seen
         return None
 
@@ -445,7 +453,7 @@ def _sort_by_arm(
         near = [place for place, distance in enumerate(far) if distance <= REACH]
         if vacant := [place for place in near if place not in arms]:
             arms[min(vacant, key=lambda place: far[place])] = one
-        if not near and (one.hand.score >= SURE or not one.fresh):
+        if not near:
             elsewhere.append(one)
     return arms, elsewhere
 

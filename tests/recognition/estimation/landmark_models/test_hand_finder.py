@@ -11,7 +11,7 @@ import cv2
 import numpy as np
 import pytest
 
-from app.recognition.estimation.factory import OnnxPoseEstimator
+from app.recognition.estimation.factory import OnnxPoseEstimator, hand_tracker
 from app.recognition.estimation.landmark_models.detector import PALM_LAYOUT, Detector
 from app.recognition.estimation.landmark_models.hand_model import (
     LARGEST,
@@ -102,6 +102,18 @@ def test_fingers_of_gloved_hands_are_seen_and_followed(
         assert len(found.hands) == 2
         assert all(lies_in_a_hand(*hand.xy.mean(axis=0)) for hand in found.hands)
         assert found.places == ()
+
+
+def test_a_hand_is_believed_in_and_what_is_none_is_not(
+    installed_models: None, finder: HandFinder, diver: Image
+) -> None:
+    model = hand_tracker(search="pose", threads=1, provider="cpu").model
+    places = finder.search(diver, parts_of(diver), 0.1)
+    hands = [place for place in places if lies_in_a_hand(place.box.x, place.box.y)]
+    assert all(model.believes_place(diver, place) for place in hands[:2])
+    others = [place for place in places if not lies_in_a_hand(place.box.x, place.box.y)]
+    assert others
+    assert not any(model.believes_place(diver, place) for place in others)
 
 
 def test_without_the_model_of_gloved_hands_their_places_are_seen(

@@ -160,6 +160,29 @@ def test_fingers_are_looked_for_at_an_arm_of_whose_hand_only_the_place_is_seen(
     assert seen.places == ()
 
 
+@pytest.mark.parametrize(("least", "stays"), [(0.0, True), (np.inf, False)])
+def test_a_hand_stays_with_the_word_of_two_of_its_first_three_frames(
+    estimator: OnnxPoseEstimator,
+    saluting: tuple[VideoFrame, ...],
+    monkeypatch: pytest.MonkeyPatch,
+    least: float,
+    stays: bool,
+) -> None:
+    image = saluting[-1].image
+    found = estimator.estimate(image, 0.0)
+    assert found.body is not None
+    saluter = max(found.hands, key=lambda one: salute_score(one.xy))
+    monkeypatch.setattr("app.recognition.estimation.landmark_models.hand_model.BELIEVED", least)
+    tracker = hand_tracker(search="pose", threads=1, provider="cpu")
+    seen: tuple[SeenHand, ...] = (SeenHand(saluter, region_of_hand(saluter.xy)),)
+    stayed = []
+    for time in (0.0, 1.0):
+        tracker.complete(image, seen, (found.body,), time)
+        seen = tracker.follow(image, time + 1.0)
+        stayed.append(any(find_duplicates(one.hand, saluter) for one in seen))
+    assert stayed == [True, stays]
+
+
 def test_no_arm_has_two_hands(
     estimator: OnnxPoseEstimator, saluting: tuple[VideoFrame, ...]
 ) -> None:
