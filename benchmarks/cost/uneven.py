@@ -199,7 +199,7 @@ class _Stream(BaseHTTPRequestHandler):
 def show_live(rate: float, quick: bool) -> Iterator[Figure]:
     """Show a gesture to a robot that works for one picture at a time, and yield what it read."""
     name, gesture = SHOWN["line"]
-    random, showings = np.random.default_rng(1), 4 if quick else 10
+    random, showings = np.random.default_rng(1), 3 if quick else 10
     with Camera(gesture) as camera:
         Thread(target=camera.serve_forever, daemon=True).start()
         address = f"http://127.0.0.1:{camera.server_port}/"
