@@ -23,10 +23,17 @@ from onnx import TensorProto, helper, numpy_helper
 from app.recognition.estimation.factory import hand_tracker
 from app.recognition.estimation.landmark_models.hand_model import (
     INPUT_SIZE,
+    LEAST_PRESENCE,
+    WORTH_A_SECOND_LOOK,
     HandModel,
     HandPlace,
     SeenHand,
     parts_of,
+)
+from app.recognition.estimation.landmark_models.hand_tracker import (
+    FINGERS_SCALE,
+    GLOVE_SCALE,
+    TURNS,
 )
 from app.recognition.estimation.landmark_models.region import REPLICATED_BORDER
 from app.recognition.estimation.water import CORRECTIONS, apply_correction
@@ -42,13 +49,13 @@ JUDGEMENT: Final = "judgement"
 PROPOSED_FROM, PLACES = 0.2, 5
 """Least score of the finder's places that are looked at, and their number in a picture."""
 
-TURNS, LOOKS = 8, 3
-"""Turns of a search, and those in which a place is looked at."""
+LOOKS = 3
+"""Number of `TURNS` in which a place is looked at."""
 
-SCALES: Final = {False: 1.1, True: 1.3}
+SCALES: Final = {False: FINGERS_SCALE, True: GLOVE_SCALE}
 """Side of the region of a look, bare and gloved, over that of the place."""
 
-SEEN_FROM: Final = {False: 0.1, True: 0.5}
+SEEN_FROM: Final = {False: WORTH_A_SECOND_LOOK, True: LEAST_PRESENCE}
 """Presence from which a look has seen something."""
 
 FITTING: Final = (0.45, 2.2)
@@ -91,13 +98,18 @@ def write_looks(folder: Path, model: Path, seed: int) -> None:
 def _open_features(model: Path) -> tuple[Any, str]:
     """Open a landmark model with the features of its presence as a further output; name them."""
     loaded = onnx.load(str(model))
-    made = {node.output[0]: node for node in loaded.graph.node}
+    source = _find_features(loaded.graph)
+    loaded.graph.output.append(helper.make_empty_tensor_value_info(source))
+    return onnxruntime.InferenceSession(loaded.SerializeToString()), source
+
+
+def _find_features(graph: onnx.GraphProto) -> str:
+    """Return the name of the features from which presence is told."""
+    made = {node.output[0]: node for node in graph.node}
     node = made[PRESENCE]
     while node.op_type != "Gemm":
         node = made[node.input[0]]
-    source = node.input[0]
-    loaded.graph.output.append(helper.make_empty_tensor_value_info(source))
-    return onnxruntime.InferenceSession(loaded.SerializeToString()), source
+    return str(node.input[0])
 
 
 def _look(
@@ -150,13 +162,13 @@ def teach_judgement(model: Path, folders: Sequence[Path], output: Path) -> None:
     print(f"{len(hands)} looks, {hands.sum()} of them at hands", flush=True)
     weights, bias = fit(features, hands)
     loaded = onnx.load(str(model))
-    graph, (_, source) = loaded.graph, _open_features(model)
+    graph = loaded.graph
     values = {"judged": weights[None], "judged_bias": np.array([bias])}
     if all(output.name != JUDGEMENT for output in graph.output):
         for name in values:
             cast = helper.make_node("Cast", [name], [f"cast_{name}"], to=TensorProto.FLOAT)
             graph.node.append(cast)
-        given = [source, *(f"cast_{name}" for name in values)]
+        given = [_find_features(graph), *(f"cast_{name}" for name in values)]
         graph.node.append(helper.make_node("Gemm", given, [JUDGEMENT], transB=1))
         graph.output.append(helper.make_tensor_value_info(JUDGEMENT, TensorProto.FLOAT, (1, 1)))
     for tensor in [each for each in graph.initializer if each.name in values]:

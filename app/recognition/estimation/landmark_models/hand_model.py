@@ -17,7 +17,7 @@ from typing_extensions import Self
 
 from app.recognition.estimation.landmark_models.arms import ArmPace, measure_body
 from app.recognition.estimation.landmark_models.detector import Detector
-from app.recognition.estimation.landmark_models.onnx_session import ModelSession, Signature
+from app.recognition.estimation.landmark_models.onnx_session import ModelSession, Signature, Tensor
 from app.recognition.estimation.landmark_models.region import (
     KNUCKLES,
     REPLICATED_BORDER,
@@ -165,6 +165,11 @@ class HandModel:
         self._session = session
         self._gloved = gloved
 
+    @property
+    def judges(self) -> bool:
+        """Whether there is a model that judges; without it presence decides what is new."""
+        return self._gloved is not None
+
     def look(self, image: Image, region: Region, *, gloved: bool = False) -> SeenHand | None:
         """Return the hand in a usable `region` of `image`, or None where the model finds none."""
         seen = self._landmarks(image, region, gloved=gloved)
@@ -218,16 +223,13 @@ class HandModel:
 
     @staticmethod
     def _judge(session: ModelSession, image: Image, region: Region) -> float:
-        region.crop(image, INPUT_SIZE, REPLICATED_BORDER, out=session.pixels)
-        *_, judgement = session.run()
-        return float(judgement[0, 0])
+        return float(_run(session, image, region)[-1][0, 0])
 
     def _landmarks(self, image: Image, region: Region, *, gloved: bool) -> SeenHand | None:
         session = self._gloved if gloved else self._session
         if session is None:
             return None
-        region.crop(image, INPUT_SIZE, REPLICATED_BORDER, out=session.pixels)
-        raw, presence, right, *_ = session.run()
+        raw, presence, right, *_ = _run(session, image, region)
         points = raw.reshape(len(HAND_LANDMARKS), 3)[:, :2].astype(np.float64)
         xy = region.to_image(points, INPUT_SIZE)
         # The model was trained on mirrored selfies and renamed since: in an unmirrored image
@@ -235,6 +237,11 @@ class HandModel:
         side: Side = "right" if right[0, 0] > 0.5 else "left"
         hand = Hand(xy, side, min(float(presence[0, 0]), 1.0))
         return SeenHand(hand, region_of_hand(xy), gloved=gloved)
+
+
+def _run(session: ModelSession, image: Image, region: Region) -> list[Tensor]:
+    region.crop(image, INPUT_SIZE, REPLICATED_BORDER, out=session.pixels)
+    return session.run()
 
 
 def _has(seen: SeenHand | None, presence: float) -> TypeGuard[SeenHand]:

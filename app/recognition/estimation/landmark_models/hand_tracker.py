@@ -225,7 +225,7 @@ class HandTracker:
     def _judge_again(self, image: Image, tracked: SeenHand, seen: SeenHand) -> SeenHand | None:
         """Return a hand with its judgement; None where most of its frames speak against it."""
         judged, doubted = tracked.judged, tracked.doubted
-        lasting = seen.gloved or self._search == "palm" or not seen.following.usable
+        lasting = seen.gloved or not self.model.judges or not seen.following.usable
         if not lasting and judged < MOST_JUDGED:
             judged += 1
             doubted += not self.model.believes(image, seen)
@@ -249,7 +249,7 @@ class HandTracker:
     def _look_for_glove(self, image: Image, place: HandPlace) -> SeenHand | None:
         """Return the gloved hand at a place, None where it is not seen in most turns.
 
-        Where fingers are seen already, the others are no gloves.
+        Where certain fingers are seen already, the others are no gloves.
         """
         fingers = any(
             one.shows_fingers and not one.gloved and one.hand.score >= SURE for one in self._tracked

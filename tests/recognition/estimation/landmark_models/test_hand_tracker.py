@@ -160,19 +160,25 @@ def test_fingers_are_looked_for_at_an_arm_of_whose_hand_only_the_place_is_seen(
     assert seen.places == ()
 
 
-@pytest.mark.parametrize(("least", "stays"), [(0.0, True), (np.inf, False)])
+@pytest.mark.parametrize(
+    ("least", "judged", "stays"), [(0.0, True, True), (np.inf, True, False), (np.inf, False, True)]
+)
 def test_a_hand_stays_with_the_word_of_two_of_its_first_three_frames(
     estimator: OnnxPoseEstimator,
     saluting: tuple[VideoFrame, ...],
     monkeypatch: pytest.MonkeyPatch,
     least: float,
+    judged: bool,
     stays: bool,
 ) -> None:
     image = saluting[-1].image
     found = estimator.estimate(image, 0.0)
     assert found.body is not None
     saluter = max(found.hands, key=lambda one: salute_score(one.xy))
-    monkeypatch.setattr("app.recognition.estimation.landmark_models.hand_model.BELIEVED", least)
+    for name in ("BELIEVED", "SURE"):
+        monkeypatch.setattr(f"app.recognition.estimation.landmark_models.hand_model.{name}", least)
+    if not judged:
+        monkeypatch.setattr("app.recognition.estimation.factory.gloves_path", lambda: None)
     tracker = hand_tracker(search="pose", threads=1, provider="cpu")
     seen: tuple[SeenHand, ...] = (SeenHand(saluter, region_of_hand(saluter.xy)),)
     stayed = []
