@@ -312,7 +312,7 @@ def test_a_run_goes_on_when_the_client_leaves(
 def test_a_run_whose_process_dies_says_so_and_goes_on_when_asked_again(
     client: httpx.Client, studio: Studio, place: str
 ) -> None:
-    clip = add_recorded_clip(studio, recording_of(*["circle"] * 5), "many.mp4")
+    clip = add_recorded_clip(studio, recording_of(*["circle"] * 40), "many.mp4")
     labelled(client, place, {"clip_id": clip, "expected": "circle"})
     with ThreadPoolExecutor(1) as asking:
         answer = asking.submit(client.post, f"{place}/run")
