@@ -14,8 +14,9 @@ searched in parts.
 - place: boxes of hands; found if the middle of a found hand, or of the place of one whose fingers
   are not seen, is in it.
 - wrong: hands and places found that are in no hand's box, a photograph.
-- wrist: boxes of hands; found if the box's middle is within 0.3 of `measure_body` of a wrist of the
-  body that is followed.
+- wrist: boxes of hands; found if a wrist of the body that is followed is within 0.3 of
+  `measure_body` of the box's middle, or within half of the box's longer side: the hands of near
+  divers are so large that their own wrists are farther from their middles than 0.3 of the body.
 
 Each is counted for all photographs, by water, by the height of the diver's box as a share of the
 picture's, and for those that chose no constant of what finds hands (*held*), also by water.
@@ -70,7 +71,8 @@ NOSE: Final = POSE_LANDMARKS.index("nose")
 WRISTS: Final = [POSE_LANDMARKS.index(f"{side}_wrist") for side in ("left", "right")]
 
 WRIST_REACH: Final = 0.3
-"""Distance from a wrist to the middle of its hand's box, in body sizes, that is right."""
+"""Distance from a wrist to the middle of its hand's box, in body sizes, that is right also where
+the hand is smaller."""
 
 SIZES: Final = {"far": 0.5, "middle": 0.75, "near": 1.01}
 """Rows by size, with the share of the picture's height that the diver's box is lower than."""
@@ -150,8 +152,9 @@ def score_still(boxes: Mapping[str, FloatArray], found: FrameLandmarks) -> dict[
         if what in boxes:
             points = [] if body is None else [body.xy[landmarks].mean(axis=0)]
             score[name] = _count([_holds(boxes[what], points)])
-    reach = 0.0 if body is None else WRIST_REACH * measure_body(body)
     wrists = np.full((2, 2), np.inf) if body is None else body.xy[WRISTS]
+    least = 0.0 if body is None else WRIST_REACH * measure_body(body)
+    reach = np.maximum(least, np.ptp(hands, axis=1).max(axis=1) / 2)
     far = [np.linalg.norm(wrists - box.mean(axis=0), axis=1).min() for box in hands]
     return {
         **score,
@@ -159,7 +162,7 @@ def score_still(boxes: Mapping[str, FloatArray], found: FrameLandmarks) -> dict[
         "stray": _count([not _holds(hands, [middle]) for middle in middles]),
         "place": _count([_holds(box[None], places) for box in hands]),
         "wrong": _count([not _holds(hands, [place]) for place in places]),
-        "wrist": _count([bool(each <= reach) for each in far]),
+        "wrist": _count([bool(each <= most) for each, most in zip(far, reach, strict=True)]),
     }
 
 

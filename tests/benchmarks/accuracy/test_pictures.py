@@ -73,6 +73,15 @@ def test_a_wrist_is_right_near_its_hand_in_body_sizes() -> None:
     assert score["wrist"] == Share(1, 2)
 
 
+def test_a_wrist_within_a_hand_that_is_larger_than_the_body_is_right() -> None:
+    xy = np.full((33, 2), 15.0)
+    xy[[11, 12, 23, 24]] = (10, 0), (20, 0), (10, 30), (20, 30)
+    body = Body(xy, np.ones(33), 1.0)
+    near, nearer = ((0.0, 0.0), (60.0, 60.0)), ((10.0, 18.0), (20.0, 60.0))
+    score = score_still({"Hand": np.array([near, nearer])}, FrameLandmarks(body, ()))
+    assert score["wrist"] == Share(1, 2)
+
+
 def test_what_nobody_drew_a_box_around_is_not_asked_for() -> None:
     score = score_still({}, FrameLandmarks(body_at(1, 1), ()))
     assert all(each.asked == 0 for each in score.values())
