@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import get_args
 
 import pytest
+from pydantic import ValidationError
 
 from app.recognition.errors import VehicleError
 from app.recognition.phrases.grammar import Grammar
@@ -37,6 +38,12 @@ def read(tmp_path: Path, text: str) -> VehicleTable:
     file = tmp_path / "vehicle.toml"
     file.write_text(HEAD + text)
     return read_vehicle_table(file)
+
+
+def test_an_action_of_a_table_cannot_be_changed() -> None:
+    depth = Depth(do="depth", metres=2.0)
+    with pytest.raises(ValidationError, match="frozen"):
+        depth.metres = 20.0
 
 
 @pytest.mark.parametrize(
