@@ -155,14 +155,14 @@ def score_still(boxes: Mapping[str, FloatArray], found: FrameLandmarks) -> dict[
     wrists = np.full((2, 2), np.inf) if body is None else body.xy[WRISTS]
     least = 0.0 if body is None else WRIST_REACH * measure_body(body)
     reach = np.maximum(least, np.ptp(hands, axis=1).max(axis=1) / 2)
-    far = [np.linalg.norm(wrists - box.mean(axis=0), axis=1).min() for box in hands]
+    far = np.linalg.norm(wrists[:, None] - hands.mean(axis=1), axis=2).min(axis=0)
     return {
         **score,
         "hand": _count([_holds(box[None], middles) for box in hands]),
         "stray": _count([not _holds(hands, [middle]) for middle in middles]),
         "place": _count([_holds(box[None], places) for box in hands]),
         "wrong": _count([not _holds(hands, [place]) for place in places]),
-        "wrist": _count([bool(each <= most) for each, most in zip(far, reach, strict=True)]),
+        "wrist": _count((far <= reach).tolist()),
     }
 
 
