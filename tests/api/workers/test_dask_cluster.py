@@ -2,23 +2,27 @@
 
 from __future__ import annotations
 
+import asyncio
 import os
 import signal
-import time
 from collections.abc import Iterator
 from pathlib import Path
 
 import httpx
 import pytest
-from distributed import Client
+from distributed import Client, Event
 
 from app.api.services.running_studio import Studio
+from app.api.workers.dask_cluster import DaskCluster
+from app.api.workers.executor import Order
 from app.recognition import Recording
-from app.settings import Limits, Settings
+from app.settings import Settings
+from app.store import Job
 from tests.api.recordings import add_recorded_clip, recording_of
 from tests.api.routes.clips.test_clips import upload
 from tests.api.running import Running, until
 from tests.api.running_workers import linux, workers_of
+from tests.api.workers.test_local_processes import order, record
 from tests.dask_cluster import Cluster, dask_cluster
 from tests.recognition.damaged_clips import write_clip
 from tests.recognition.demonstrations import pool
@@ -28,8 +32,8 @@ pytestmark = [pytest.mark.slow, linux, pytest.mark.usefixtures("installed_models
 
 JOBS = "/api/v1/jobs"
 FRAMES = 20
-SILENCE = 30.0
-"""Seconds without progress: enough for the models to be loaded on a busy machine."""
+SILENCE = 10.0
+"""Seconds without a line after which a process is taken for a hanging one."""
 
 
 @pytest.fixture(scope="module")
@@ -45,7 +49,6 @@ def settings(tmp_path: Path, cluster: Cluster) -> Settings:
         samples_dir=tmp_path / "none",
         executor=f"dask://{cluster.address}",
         workers=2,
-        limits=Limits(worker_silence_seconds=SILENCE),
     )
 
 
@@ -56,6 +59,12 @@ def workers_at_work(cluster: Cluster, command: str = "record") -> dict[int, int]
 
 def status(client: httpx.Client, job_id: str) -> str:
     return str(client.get(f"{JOBS}/{job_id}").json()["status"])
+
+
+def ended(client: httpx.Client, server: Running, job_id: str) -> Job:
+    """Return a job once it is done or has failed."""
+    until(lambda: status(client, job_id) in ("done", "failed"))
+    return server.studio.jobs.get(job_id)
 
 
 def test_jobs_run_on_the_cluster_and_checks_and_test_runs_too(
@@ -104,37 +113,51 @@ def test_a_job_whose_machine_vanishes_is_done_by_another_one_once(
     cluster.add_worker()
     for process in (machine, child):
         os.kill(process, signal.SIGKILL)
-    until(lambda: status(client, job) == "done")
-    answer = server.studio.jobs.get(job)
-    assert (answer.attempts, answer.frames) == (1, FRAMES)
+    answer = ended(client, server, job)
+    assert (answer.error, answer.status, answer.attempts) == (None, "done", 1)
+    assert answer.frames == FRAMES
     recording = server.studio.clips.recording(answer.clip_id)
     assert len(Recording.load(recording).poses) == FRAMES
     assert not list(recording.parent.glob(".*"))
 
 
 def test_a_job_that_waits_for_a_place_again_is_not_taken_for_a_hanging_one(
-    client: httpx.Client, server: Running, cluster: Cluster, tmp_path: Path
+    cluster: Cluster, tmp_path: Path
 ) -> None:
-    job = upload(client, write_clip(tmp_path / "clip.mp4", frames=FRAMES)).json()["job_id"]
-    until(lambda: workers_at_work(cluster))
-    (child, machine) = next(iter(workers_at_work(cluster).items()))
-    os.kill(child, signal.SIGSTOP)
-    with Client(cluster.address, set_as_default=False) as dask:
-        until(lambda: len(dask.nthreads()) > 1)
-        processes = dask.run(os.getpid)
-        others = [address for address, process in processes.items() if process != machine]
-        # Every other place is taken for longer than a process may be silent.
-        taken = [
-            dask.submit(time.sleep, SILENCE + 8, workers=[each], pure=False) for each in others
-        ]
-        until(lambda: sum(map(len, dask.processing().values())) > len(others))
+    clip = write_clip(tmp_path / "long.mp4", frames=2000)
+    asyncio.run(lose_its_place(cluster, order(record(clip))))
+    cluster.add_worker()  # in place of the killed one
+
+
+async def lose_its_place(cluster: Cluster, given: Order) -> None:
+    """Kill the machine of a process while all others are taken, and give it one of them later."""
+    executor = DaskCluster(cluster.address)
+    async with (
+        executor.start(given) as lines,
+        Client(cluster.address, asynchronous=True, set_as_default=False) as dask,
+    ):
+        await lines.readline()
+        (child, machine) = next(iter(workers_at_work(cluster).items()))
+        processes = await dask.run(os.getpid)
+        lost = next(address for address, process in processes.items() if process == machine)
+        others = set(processes) - {lost}
+        free = await Event("free", client=dask)
+        taken = [dask.submit(free.wait, workers=[each], pure=False) for each in others]
+        while sum(map(len, (await dask.processing()).values())) <= len(others):
+            await asyncio.sleep(0.1)
         for process in (machine, child):
             os.kill(process, signal.SIGKILL)
-        dask.gather(taken)
-    until(lambda: status(client, job) in ("done", "failed"))
-    cluster.add_worker()  # in place of the killed one
-    answer = server.studio.jobs.get(job)
-    assert (answer.error, answer.status, answer.attempts) == (None, "done", 1)
+        while lost in await dask.nthreads():
+            await asyncio.sleep(0.1)
+        waits = asyncio.ensure_future(lines.readline(SILENCE))
+        while (await asyncio.wait({waits}, timeout=1.5 * SILENCE))[0]:
+            assert waits.result()  # told before the machine was killed
+            waits = asyncio.ensure_future(lines.readline(SILENCE))
+        waits.cancel()
+        await free.set()
+        await dask.gather(taken)
+        assert await lines.readline()
+    await executor.close()
 
 
 def test_a_job_whose_scheduler_vanishes_is_submitted_again(
@@ -144,5 +167,5 @@ def test_a_job_whose_scheduler_vanishes_is_submitted_again(
     until(lambda: workers_at_work(cluster))
     cluster.restart_scheduler()
     cluster.add_worker()  # a worker ends when its scheduler does not come back
-    until(lambda: status(client, job) == "done")
-    assert server.studio.jobs.get(job).attempts == 1
+    answer = ended(client, server, job)
+    assert (answer.error, answer.status, answer.attempts) == (None, "done", 1)
