@@ -81,6 +81,8 @@ def test_a_page_whose_session_has_ended_asks_to_sign_in(browser: Browser, tmp_pa
         other = context.new_page()
         other.goto("/")
         other.get_by_role("button", name="Log out").click()
+        # Chromium may never close a page whose navigation has just begun.
+        expect(other.get_by_label("Token")).to_be_visible()
         other.close()
         expect(page.get_by_label("Token")).to_be_visible(timeout=30_000)
         page.get_by_label("Token").fill(token)
