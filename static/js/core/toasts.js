@@ -3,8 +3,8 @@
 import { elementOf, html, iconButtonOf, nothing } from "../templates.js";
 import { byId } from "./dom.js";
 
-/** @type {Record<string, number>} */
-const SHOWN_FOR = { info: 6000, error: 15000 };
+/** Milliseconds. */
+const SHOWN_FOR = { info: 6000, error: 15000, offer: 15000 };
 
 /**
  * Reserve the height of the messages, so that they cover no control that is used next.
@@ -51,16 +51,26 @@ export function toast(title, detail = "", { kind = "info", action = null } = {})
   );
   element.dataset.text = title + detail;
   box.append(element);
-  let timer = setTimeout(close, SHOWN_FOR[kind]);
-  // A message stays while the pointer or the focus is on it.
+  removeAfter(element, SHOWN_FOR[action ? "offer" : kind]);
+  return element;
+}
+
+/**
+ * Remove a message after some milliseconds, but not while the pointer or the focus is on it.
+ *
+ * @param {HTMLElement} element
+ * @param {number} milliseconds
+ */
+function removeAfter(element, milliseconds) {
+  const close = () => element.remove();
+  let timer = setTimeout(close, milliseconds);
   const hold = () => clearTimeout(timer);
   const release = () => {
     clearTimeout(timer);
-    timer = setTimeout(close, SHOWN_FOR[kind]);
+    timer = setTimeout(close, milliseconds);
   };
   for (const event of ["pointerenter", "focusin"]) element.addEventListener(event, hold);
   for (const event of ["pointerleave", "focusout"]) element.addEventListener(event, release);
-  return element;
 }
 
 /**

@@ -26,6 +26,13 @@ import(document.scripts[0].src.replace("main.js", "core/toasts.js")).then(({ toa
     { kind: "error" }).dispatchEvent(new Event("pointerenter"))))
 """
 
+OFFER = """
+import(document.scripts[0].src.replace("main.js", "core/toasts.js")).then(({ toast }) => {
+  toast("Told");
+  toast("Offered", "", { action: { label: "Undo", run: () => {} } });
+})
+"""
+
 REACHED = """
 (button) => {
   button.scrollIntoView({ block: "nearest" });
@@ -70,3 +77,17 @@ def test_every_gesture_can_be_pressed_while_messages_are_shown(
         page.get_by_role("button", name="Dismiss").last.click()
     # Without a message nothing is reserved.
     expect(page.locator("html")).to_have_attribute("style", "--toasts: 0px;")
+
+
+def test_a_message_that_offers_undo_stays_longer_than_one_that_only_tells(
+    open_page: OpenPage, library: Library
+) -> None:
+    page = open_page(library.address, scene=False)
+    page.clock.install()
+    page.evaluate(OFFER)
+    messages = page.locator(".toast")
+    expect(messages).to_have_count(2)
+    page.clock.run_for(12_000)
+    expect(messages.locator("b")).to_have_text(["Offered"])
+    page.clock.run_for(6_000)
+    expect(messages).to_have_count(0)
