@@ -105,7 +105,9 @@ function listen(handlers, after) {
   });
   stream.addEventListener("jobs", (event) => {
     const job = data(event);
-    if (job.id) handlers.jobs(job);
+    if (job.status) handlers.jobs(job);
+    // Of a deleted clip there is no job any more.
+    else if (job.clip_id) handlers.clips(job.clip_id);
   });
 }
 

@@ -55,6 +55,12 @@ test("a page that nobody looks at gives its connection back, and catches up once
   assert.equal(first.readyState, 0, "a short look elsewhere changes nothing");
   first.dispatchEvent(new MessageEvent("clips", { data: '{"id": "c1"}' }));
   assert.deepEqual(heard.splice(0), [["clips", "c1"]]);
+  const job = { id: "j1", clip_id: "c1", status: "running" };
+  first.dispatchEvent(new MessageEvent("jobs", { data: JSON.stringify(job) }));
+  assert.deepEqual(heard.splice(0), [["jobs", job]]);
+  const deleted = '{"id": "j1", "clip_id": "c1", "progress": {"time": 0.2}}';
+  first.dispatchEvent(new MessageEvent("jobs", { data: deleted }));
+  assert.deepEqual(heard.splice(0), [["clips", "c1"]], "a job is gone with its clip");
 
   update({ pending: [{ clip: "c1" }] });
   look(true);
