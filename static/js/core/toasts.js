@@ -62,13 +62,13 @@ export function toast(title, detail = "", { kind = "info", action = null } = {})
  * @param {number} milliseconds
  */
 function removeAfter(element, milliseconds) {
-  const close = () => element.remove();
-  let timer = setTimeout(close, milliseconds);
+  let timer = 0;
   const hold = () => clearTimeout(timer);
   const release = () => {
-    clearTimeout(timer);
-    timer = setTimeout(close, milliseconds);
+    hold();
+    timer = setTimeout(() => element.remove(), milliseconds);
   };
+  release();
   for (const event of ["pointerenter", "focusin"]) element.addEventListener(event, hold);
   for (const event of ["pointerleave", "focusout"]) element.addEventListener(event, release);
 }
