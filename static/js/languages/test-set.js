@@ -68,7 +68,7 @@ export function runTestSet() {
   return running;
 }
 
-/** Run after a change of the takes, which a run under way does not include. */
+/** Run after a change of the takes or the language, which a run under way does not include. */
 export async function runWithNews() {
   await running;
   await runTestSet();
@@ -157,8 +157,8 @@ export function changeWords({ better, worse, takes }) {
 async function testAgain() {
   await loadTestSet();
   const { testSet } = state;
-  if (!testSet?.waiting || testSet.takes.length > MOST_UNASKED || state.trial) return;
-  await runTestSet();
+  if (!testSet?.waiting || testSet.takes.length > MOST_UNASKED) return;
+  await runWithNews();
   const now = state.testSet;
   const words = now && now.revision > testSet.revision - 1 ? changeWords(now) : "";
   if (words && now?.language_id === testSet.language_id)
