@@ -249,6 +249,23 @@ function overview(state) {
     ${dialSection(state, report)}`;
 }
 
+/**
+ * Draw the view; what has the focus stays where it is when a report comes above it.
+ *
+ * @param {State} state
+ * @param {HTMLElement} root
+ * @param {HTMLElement} all
+ */
+function draw(state, root, all) {
+  const { activeElement: focused } = document;
+  const top = () => (all.contains(focused) ? (focused?.getBoundingClientRect().top ?? 0) : 0);
+  const before = top();
+  const held = before > 0 && before < innerHeight;
+  root.style.overflowAnchor = held ? "none" : ""; // The browser holds what is topmost.
+  render(overview(state), all);
+  if (held) root.scrollBy(0, top() - before);
+}
+
 /** @type {any} */
 const ALL = Object.keys(state); // A name that is left out here would be a part that goes stale.
 
@@ -268,7 +285,7 @@ export function open(root) {
   follow(["view", "gestures", "returns"], keepChecked);
   follow(["testSet"], judgeAgain);
   follow(["view", "gestures", "clips", "health"], loadInvitations);
-  follow(ALL, () => state.view === "health" && render(overview(state), all));
+  follow(ALL, () => state.view === "health" && draw(state, root, all));
   follow(["pair", "gestures"], ({ pair, gestures }) => {
     const opens = pair !== null && gestures !== null;
     all.hidden = opens;
