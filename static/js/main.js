@@ -80,7 +80,7 @@ function drawEverything() {
   follow(["uploads"], drawUploads);
   follow(["clips", "jobs", "clip", "library"], drawClips);
   follow(["clips", "jobs", "loaded"], drawBatch);
-  follow(["clips", "gestures", "clip", "samples"], drawTableButton);
+  follow(["clips", "gestures", "clip", "samples", "loaded"], drawTableButton);
   follow(["clips", "gestures"], drawTakesButton);
   follow(["quota"], drawQuota);
   follow(["quota", "clips", "uploads"], followQuota);

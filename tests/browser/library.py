@@ -9,6 +9,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 import httpx
+from playwright.sync_api import Route
 
 from app.recognition import Recording
 from app.store import Clip
@@ -107,3 +108,10 @@ def library_of(server: Running, client: httpx.Client, name: str) -> Library:
     library.add_gesture("circle")
     library.add_gesture("line", add_clip(server, "line", name=f"{name} line.mp4"))
     return library
+
+
+def answer_late(route: Route) -> None:
+    """Answer a request of the page a second later than the server does."""
+    answer = route.fetch()
+    route.request.frame.page.wait_for_timeout(1000)
+    route.fulfill(response=answer)

@@ -82,10 +82,10 @@ const usable = () => state.clips.filter(({ status }) => status === "done" || BUS
  *
  * @param {State} state
  */
-export function drawTableButton({ gestures, clip, samples }) {
+export function drawTableButton({ gestures, clip, samples, loaded }) {
   const button = byId("make-gestures");
   const clips = usable();
-  button.hidden = !clips.length;
+  button.hidden = !loaded || !clips.length;
   const recognisable =
     gestures?.gestures.length &&
     !gestures.sample &&

@@ -3,19 +3,18 @@
 from __future__ import annotations
 
 import re
-import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import pytest
-from playwright.sync_api import Page, Route, expect
+from playwright.sync_api import Page, expect
 
 from app.recognition import Gesture, Language, Recognizer
 from app.recognition.recording.clip_range import find_clip_range
 from tests.api.recordings import recording_of
 from tests.api.running import Running, client_of
 from tests.browser.conftest import OpenPage
-from tests.browser.library import Library, add_clip
+from tests.browser.library import Library, add_clip, answer_late
 
 NONE = "none of these"
 
@@ -154,12 +153,6 @@ class Studio:
         expect(self.page.locator("#toasts")).to_contain_text(f"{change_of(before, after)}.")
 
 
-def answer_late(route: Route) -> None:
-    answer = route.fetch()
-    time.sleep(1)
-    route.fulfill(response=answer)
-
-
 @pytest.fixture
 def studio(open_page: OpenPage, server: Running) -> Studio:
     client = client_of(server.address)
@@ -204,7 +197,7 @@ def test_all_that_the_page_advises_changes_only_what_a_table_by_hand_says(studio
 
     studio.open("Studio")
     # The answer of the server may arrive after its event, and after the new test set.
-    page.route("**/gestures?*", answer_late)
+    page.route("**/gestures?*", answer_late, times=1)
     remedy.get_by_role("button").click()
     page.get_by_role("button", name="Keep", exact=True).click()
     studio.expect_change(first, remedied)

@@ -12,7 +12,7 @@ from playwright.sync_api import Locator, Page, expect
 from tests.api.running import Running
 from tests.browser.accessibility import faults
 from tests.browser.conftest import OpenPage
-from tests.browser.library import add_clip, library_of
+from tests.browser.library import add_clip, answer_late, library_of
 
 EXTRACTION_MS = 300_000
 """Longest wait for the poses of a clip of six seconds on a loaded machine."""
@@ -158,6 +158,7 @@ def test_takes_of_known_gestures_become_further_demonstrations_where_they_are_mi
     expect(row["IMG_2222"].get_by_role("textbox")).to_have_value("line")
     expect(row["IMG_2222"].get_by_role("checkbox")).not_to_be_checked()  # It is in the test set.
     row["IMG_2222"].get_by_role("checkbox").check()
+    page.route("**/api/v1/languages", answer_late, times=1)  # One of them is saved into.
     page.reload()
     dialog = open_table(page)
     expect(row["IMG_2222"].get_by_role("checkbox")).to_be_checked()
