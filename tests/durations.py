@@ -4,10 +4,10 @@
 """
 
 import os
-import time
 from collections.abc import Generator, Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from time import monotonic
 from typing import Any
 
 import pytest
@@ -29,9 +29,9 @@ class Durations:
 
     @contextmanager
     def _measured(self, kind: str, name: str) -> Iterator[None]:
-        began, used = time.monotonic(), sum(os.times()[:4])
+        began, used = monotonic(), sum(os.times()[:4])
         yield
-        seconds, processor = time.monotonic() - began, sum(os.times()[:4]) - used
+        seconds, processor = monotonic() - began, sum(os.times()[:4]) - used
         self._here.append((seconds, processor, kind, name))
 
     @pytest.hookimpl(wrapper=True)
