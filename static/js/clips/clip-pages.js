@@ -1,6 +1,7 @@
 // The clips loaded so far from a library that may hold many more; they are loaded in pages.
 
 import * as api from "../core/api.js";
+import { loadList } from "../core/list-refresh.js";
 import { state, update } from "../core/state.js";
 import { attempt } from "../core/toasts.js";
 import { BUSY } from "./batch.js";
@@ -108,7 +109,7 @@ function inTurn(load) {
 /** Load the clips; resolves to whether that succeeded. */
 export const reloadClips = () =>
   inTurn(async () => {
-    const known = await attempt("Loading the clips", loadKnown);
+    const known = await attempt("Loading the clips", () => loadList(loadKnown));
     if (known) update(known);
     return known !== null;
   });

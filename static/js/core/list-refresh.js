@@ -1,6 +1,21 @@
-// Reloading one member of a list after the server reported a change of it.
+// Reloading a list, or one member of it after the server reported a change: answers may come late.
 
 import { attempt } from "./toasts.js";
+
+let changes = 0; // Members reported so far; a list requested before the last one is outdated.
+
+/**
+ * Load a list by `load()`, again where a member has changed meanwhile.
+ *
+ * @template T
+ * @param {() => Promise<T>} load
+ * @returns {Promise<T>}
+ */
+export async function loadList(load) {
+  const before = changes;
+  const list = await load();
+  return before === changes ? list : loadList(load);
+}
 
 /** @type {Map<string, symbol>} */
 const newest = new Map(); // the last request sent, by id
@@ -40,6 +55,7 @@ async function loaded(id, load) {
  * @param {{ load: (id: string) => Promise<M>, current: () => T[], order: (one: T, other: T) => number, take: (list: T[], member: M | null) => void }} source
  */
 export async function refresh(id, { load, current, order, take }) {
+  changes += 1;
   const answer = await loaded(id, load);
   if (!answer) return;
   const others = current().filter((each) => each.id !== id);

@@ -4,7 +4,7 @@ import * as api from "../core/api.js";
 import { browserStore } from "../core/browser-store.js";
 import { ask } from "../core/dialogs.js";
 import { plural } from "../core/format.js";
-import { refresh } from "../core/list-refresh.js";
+import { loadList, refresh } from "../core/list-refresh.js";
 import { state, update } from "../core/state.js";
 import { attempt } from "../core/toasts.js";
 import { recordAction, showDone } from "../core/undo.js";
@@ -14,7 +14,7 @@ import { recordAction, showDone } from "../core/undo.js";
 const LAST = "osg-studio.language"; // A new tab starts with the language used last.
 
 export async function reloadLanguages() {
-  const languages = await attempt("Loading the languages", api.languages.list);
+  const languages = await attempt("Loading the languages", () => loadList(api.languages.list));
   if (!languages) return;
   const wanted = [state.language, browserStore.get(LAST)].find((id) =>
     languages.some((each) => each.id === id),
