@@ -109,7 +109,7 @@ function inTurn(load) {
 /** Load the clips; resolves to whether that succeeded. */
 export const reloadClips = () =>
   inTurn(async () => {
-    const known = await attempt("Loading the clips", () => loadList(loadKnown));
+    const known = await attempt("Loading the clips", () => loadList("clips", loadKnown));
     if (known) update(known);
     return known !== null;
   });

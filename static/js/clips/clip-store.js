@@ -27,6 +27,7 @@ const STAGES = {
  */
 export const reloadClip = (id) =>
   refresh(id, {
+    list: "clips",
     load: api.clips.get,
     current: () => state.clips,
     order: newestFirst,

@@ -2,19 +2,32 @@
 
 import { attempt } from "./toasts.js";
 
-let changes = 0; // Members reported so far; a list requested before the last one is outdated.
+/** @typedef {"clips" | "languages" | "takes"} List */
+
+/** @type {Record<List, number>} */
+const changes = { clips: 0, languages: 0, takes: 0 }; // so far
 
 /**
- * Load a list by `load()`, again where a member has changed meanwhile.
+ * Note a change of a list: what was requested of it before is outdated.
+ *
+ * @param {List} list
+ */
+export function outdate(list) {
+  changes[list] += 1;
+}
+
+/**
+ * Load a list by `load()`, again where it has changed meanwhile.
  *
  * @template T
+ * @param {List} list
  * @param {() => Promise<T>} load
  * @returns {Promise<T>}
  */
-export async function loadList(load) {
-  const before = changes;
-  const list = await load();
-  return before === changes ? list : loadList(load);
+export async function loadList(list, load) {
+  const before = changes[list];
+  const answer = await load();
+  return before === changes[list] ? answer : loadList(list, load);
 }
 
 /** @type {Map<string, symbol>} */
@@ -46,16 +59,16 @@ async function loaded(id, load) {
 }
 
 /**
- * Refresh a member of a list. `current()` returns the list and `order(one, other)` sorts it;
+ * Refresh a member of a list. `current()` returns its members and `order(one, other)` sorts them;
  * `take(list, member)` gets the new one.
  *
  * @template {{ id: string }} T
  * @template {T} M
  * @param {string} id
- * @param {{ load: (id: string) => Promise<M>, current: () => T[], order: (one: T, other: T) => number, take: (list: T[], member: M | null) => void }} source
+ * @param {{ list: List, load: (id: string) => Promise<M>, current: () => T[], order: (one: T, other: T) => number, take: (list: T[], member: M | null) => void }} source
  */
-export async function refresh(id, { load, current, order, take }) {
-  changes += 1;
+export async function refresh(id, { list, load, current, order, take }) {
+  outdate(list);
   const answer = await loaded(id, load);
   if (!answer) return;
   const others = current().filter((each) => each.id !== id);

@@ -14,7 +14,9 @@ import { recordAction, showDone } from "../core/undo.js";
 const LAST = "osg-studio.language"; // A new tab starts with the language used last.
 
 export async function reloadLanguages() {
-  const languages = await attempt("Loading the languages", () => loadList(api.languages.list));
+  const languages = await attempt("Loading the languages", () =>
+    loadList("languages", api.languages.list),
+  );
   if (!languages) return;
   const wanted = [state.language, browserStore.get(LAST)].find((id) =>
     languages.some((each) => each.id === id),
@@ -30,6 +32,7 @@ export async function reloadLanguages() {
  */
 export const reloadOneLanguage = (id) =>
   refresh(id, {
+    list: "languages",
     load: api.languages.get,
     current: () => state.languages,
     order: (one, other) =>

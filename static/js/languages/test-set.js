@@ -2,6 +2,7 @@
 
 import * as api from "../core/api.js";
 import { plural } from "../core/format.js";
+import { loadList, outdate } from "../core/list-refresh.js";
 import { mayWrite } from "../core/session.js";
 import { follow, state, update } from "../core/state.js";
 import { attempt, complain, toast } from "../core/toasts.js";
@@ -31,15 +32,13 @@ const MOST_UNASKED = 30; // Takes that are recognised again unasked: a few secon
 /** @type {Promise<unknown> | null} */
 let running = null;
 
-let changes = 0; // Number of changes so far; an answer requested before the last one is outdated.
-
 /**
  * Show the test set that a change returned.
  *
  * @param {TestSet | null} testSet
  */
 function show(testSet) {
-  changes += 1;
+  outdate("takes");
   draw(testSet);
 }
 
@@ -52,10 +51,8 @@ function draw(testSet) {
 export async function loadTestSet() {
   const { language } = state;
   if (!language) return update({ testSet: null });
-  const before = changes;
-  const testSet = await attempt("Loading the test set", () => api.testSets.get(language));
-  if (before === changes) draw(testSet);
-  else await loadTestSet();
+  const load = () => loadList("takes", () => api.testSets.get(language));
+  draw(await attempt("Loading the test set", load));
   return undefined;
 }
 
