@@ -205,7 +205,8 @@ async function start() {
   if (linked && loaded) reportMissing({ clip, language });
   if (state.clip && loaded && !selectedClip())
     update({ clip: null, take: null, start: null, end: null, recognition: null });
-  if (!state.clip && state.clips.length) update({ clip: state.clips[0].id });
+  const [newest] = state.clips;
+  if (!state.clip && newest) update({ clip: newest.id, offered: newest.id });
   follow(["clip", "pending", "gestures", "library"], knowReferences);
   loadWithSelection();
   followTestSet();

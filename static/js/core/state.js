@@ -34,6 +34,7 @@ const NUMBERS = new Set(["take", "start", "end", "frame", "older", "newer"]);
 const values = {
   .../** @type {any} */ (Object.fromEntries(IN_URL.map((name) => [name, null]))),
   clips: [],
+  offered: null,
   library: { last: null, older: 0 },
   uploads: [],
   jobs: new Map(),

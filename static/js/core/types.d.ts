@@ -366,6 +366,8 @@ export interface State {
   source: string | null;
   /** The loaded clips: the newest, and those requested or referred to by id. */
   clips: Clip[];
+  /** The clip that the page showed last by its own choice: the newest, or one just uploaded. */
+  offered: string | null;
   library: Library;
   uploads: Upload[];
   jobs: Map<string, Job>;

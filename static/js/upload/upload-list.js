@@ -128,6 +128,7 @@ function startNext() {
 
 /** @param {Upload} upload */
 async function start(upload) {
+  const { clip: before } = state;
   // The rate counts from where this attempt began, which may be the middle of the file.
   /** @type {Upload["began"]} */
   let began = null;
@@ -151,9 +152,12 @@ async function start(upload) {
     const id = await call.done;
     forget(upload.key);
     const clip = await loadClip(id);
-    // Of several files only the first is shown; the others must not replace it.
+    // Of several files only the first is shown; none replaces what the user has chosen meanwhile.
     if (upload.uploaded) upload.uploaded(id);
-    else if (upload.first) select(id);
+    else if (upload.first && [before, state.offered].includes(state.clip)) {
+      select(id);
+      update({ offered: id });
+    }
     if (needsTopic(clip)) openTopics(clip);
   } catch (error) {
     if (error.code === "cancelled") forget(upload.key);

@@ -14,7 +14,7 @@ from tests.api.running import Running
 from tests.browser.accessibility import faults
 from tests.browser.conftest import OpenPage
 from tests.browser.files import drop
-from tests.browser.library import library_of
+from tests.browser.library import add_clip, answer_late, library_of
 from tests.keypoint_files.files import renamed, write_named, write_openpose
 from tests.recognition.strategies import BODY, circle, recording
 
@@ -83,3 +83,20 @@ def test_a_language_of_other_landmarks_and_files_of_other_kinds_are_told_apart(
     upload = page.get_by_role("list", name="Uploads").get_by_role("listitem")
     expect(upload).to_contain_text("landmarks.json")
     expect(upload.get_by_role("button", name="Retry landmarks.json")).to_be_visible()
+
+
+def test_an_upload_that_ends_does_not_replace_a_clip_chosen_meanwhile(
+    open_page: OpenPage, server: Running, client: httpx.Client, tmp_path: Path
+) -> None:
+    library = library_of(server, client, "another clip")
+    add_clip(server, "line", name="chosen.mp4")
+    page = open_page(library.address, scene=False)
+    clips = page.get_by_role("list", name="Clips").get_by_role("listitem")
+    poses = recording(circle, frames=40, landmarks=ARMS)
+    # The server's event lists the clip before the page has the answer to its upload.
+    page.route("**/api/v1/uploads/*", answer_late, times=1)
+    drop(page, write_named(tmp_path / "late.csv", poses))
+    expect(clips.filter(has_text="late.csv")).to_be_visible()
+    clips.filter(has_text="chosen.mp4").get_by_role("button", name="chosen.mp4").first.click()
+    expect(page.get_by_role("list", name="Uploads").get_by_role("listitem")).to_have_count(0)
+    expect(page.locator("#clip-name")).to_have_text("chosen.mp4")
