@@ -437,7 +437,7 @@ export interface Action {
 export interface UndoHandlers {
   undo: (action: any) => Promise<unknown>;
   redo: (action: any) => Promise<unknown>;
-  record: (action: any) => void;
+  record: (action: any) => Action;
 }
 
 /** A field of a dialog. */

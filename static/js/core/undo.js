@@ -13,17 +13,20 @@ const MOST = 100;
 /** @type {{ done: Action[], undone: Action[] }} */
 let { done, undone } = tabStore.read(KEY) ?? { done: [], undone: [] };
 
+// One after another: a key press or an edit may come while the one before waits for the server.
+let working = Promise.resolve();
+
 /** @type {Map<string, UndoHandlers>} */
 const kinds = new Map();
 
 /**
  * Register how actions of a kind are undone: `undo(action)` and `redo(action)` call the server and
- * resolve when it has answered; `record(action)`, if given, is called when one is recorded.
+ * resolve when it has answered; `record(action)`, if given, returns the action that is recorded.
  *
  * @param {string} kind
- * @param {{ undo: (action: any) => Promise<unknown>, redo: (action: any) => Promise<unknown>, record?: (action: any) => void }} handlers
+ * @param {{ undo: (action: any) => Promise<unknown>, redo: (action: any) => Promise<unknown>, record?: (action: any) => Action }} handlers
  */
-export function registerUndo(kind, { undo, redo, record = () => {} }) {
+export function registerUndo(kind, { undo, redo, record = (action) => action }) {
   kinds.set(kind, { undo, redo, record });
 }
 
@@ -31,15 +34,17 @@ export function registerUndo(kind, { undo, redo, record = () => {} }) {
 const handlersOf = ({ kind }) => /** @type {UndoHandlers} */ (kinds.get(kind));
 
 /**
- * Record an action: plain data, `{ title, kind, ... }`, of a kind that is registered.
+ * Record an action: plain data, `{ title, kind, ... }`, of a kind that is registered. An undo or
+ * redo that is still waiting for the server is recorded before it.
  *
  * @param {Action} action
  */
 export function recordAction(action) {
-  done = [...done, action].slice(-MOST);
-  undone = [];
-  handlersOf(action).record(action);
-  keep();
+  working = working.then(() => {
+    done = [...done, handlersOf(action).record(action)].slice(-MOST);
+    undone = [];
+    keep();
+  });
 }
 
 /**
@@ -51,20 +56,17 @@ export function recordAction(action) {
 async function step(from, to, how, words) {
   const action = from.at(-1);
   if (!action) return;
+  removeUndoButtons();
   try {
     await handlersOf(action)[how](action);
     from.pop();
     to.push(action);
     keep();
-    removeUndoButtons();
     toast(words, action.title);
   } catch (error) {
     complain(error, how === "undo" ? "Undoing" : "Redoing");
   }
 }
-
-// One after another: a second key press may come while the first waits for the server.
-let working = Promise.resolve();
 
 /** Undo the newest action; resolves when that is done. */
 export const undo = () => (working = working.then(() => step(done, undone, "undo", "Undone")));

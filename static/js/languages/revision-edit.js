@@ -8,7 +8,7 @@ import { recordAction, registerUndo, showDone } from "../core/undo.js";
 import { settleConflict } from "./edit-conflict.js";
 import { reloadLanguage, reloadLanguages, showNewest } from "./language-store.js";
 
-/** @import { Language } from "../core/types.d.ts" */
+/** @import { Action, Language } from "../core/types.d.ts" */
 
 const KEY = "osg-studio.heads"; // Beside what can be undone
 
@@ -76,15 +76,31 @@ async function remove({ id, revision }) {
 /** @param {{ id: string }} action */
 const restore = ({ id }) => api.languages.restore(id).then(reloadLanguages);
 
-/** @param {{ id: string, revision: number }} action */
-const record = ({ id, revision }) => setHead(id, { revision, shows: revision });
+/** @type {(action: Action & { id: string, revision: number }) => Action} */
+function record(action) {
+  setHead(action.id, { revision: action.revision, shows: action.revision });
+  return action;
+}
+
+/**
+ * Record an edit. Where it began with what an undo or redo has made, it began with what that shows:
+ * the edit before it can be undone as well.
+ *
+ * @type {(action: Action & { language: string, before: number, after: number }) => Action}
+ */
+function recordEdit(action) {
+  const { language, before, after } = action;
+  const left = heads[language];
+  setHead(language, { revision: after, shows: after });
+  return { ...action, before: left?.revision === before ? left.shows : before };
+}
 
 registerUndo("language", { undo: restore, redo: remove, record });
 registerUndo("created", { undo: remove, redo: restore, record });
 registerUndo("edit", {
   undo: ({ language, before, after }) => revert(language, after, before),
   redo: ({ language, before, after }) => revert(language, before, after),
-  record: ({ language, after }) => setHead(language, { revision: after, shows: after }),
+  record: recordEdit,
 });
 
 /**

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from dataclasses import replace
 
-from playwright.sync_api import Locator, Page, expect
+from playwright.sync_api import APIResponse, Locator, Page, Route, expect
 
 from app.recognition import Recording
 from tests.api.recordings import recording_of
@@ -71,14 +71,24 @@ def test_a_change_is_tried_taken_back_kept_and_goes_with_the_language(
     expect(tuning).to_be_hidden()
     page.get_by_role("button", name="Recognise", exact=True).click()
     expect(outcome).not_to_have_text(tuned)
+    # The server's event shows the redone change before the page has the answer to its redo.
+    held: list[tuple[Route, APIResponse]] = []
+    page.route("**/revert*", lambda route: held.append((route, route.fetch())), times=1)
     page.keyboard.press("Control+Shift+Z")
     expect(tuning).to_be_visible()
     tuning.get_by_role("button", name="As the profile full does").click()
-    # The server's event may hide the button before its answer makes the change undoable.
-    expect(page.get_by_text("Recognised as any language")).to_be_visible()
+    done = page.get_by_role("status").filter(has_text="Recognised as any language")
+    expect(done).to_be_visible()
     expect(tuning).to_be_hidden()
+    route, answer = held.pop()
+    route.fulfill(response=answer)
+    expect(page.get_by_role("status").filter(has_text="Redone")).to_be_visible()
+    expect(done.get_by_role("button", name="Undo")).to_be_visible()
     page.keyboard.press("Control+z")
     expect(tuning).to_contain_text(REPAIR)
+    # Both can be undone, in their order.
+    page.keyboard.press("Control+z")
+    expect(tuning).to_be_hidden()
 
 
 def revision_of(library: Library) -> int:
