@@ -104,7 +104,7 @@ export function choose(id) {
  */
 export async function begin(language, title, words) {
   recordAction({ title, kind: "created", id: language.id, revision: language.revision });
-  update({ languages: await api.languages.list() });
+  update({ languages: await loadList("languages", api.languages.list) });
   await choose(language.id);
   showDone(words, `${language.name}, ${plural(language.gestures.length, "gesture")}`);
 }
