@@ -27,15 +27,25 @@ def test_a_worker_takes_files_of_its_own_group_first() -> None:
     assert choose_file(files[:1], browses=False) == files[0]
 
 
+def environment_with(name: str, folder: Path) -> dict[str, str]:
+    """Return the environment of a run of its own, which has none of this run's options."""
+    of_this_run = ("PYTEST_ADDOPTS", "PYTEST_XDIST_WORKER")
+    inherited = {key: value for key, value in os.environ.items() if key not in of_this_run}
+    return inherited | {name: str(folder)}
+
+
 @pytest.mark.slow
 @pytest.mark.models
 def test_a_run_without_chromium_ends_with_the_command_that_brings_it(tmp_path: Path) -> None:
     file = "tests/browser/page/test_toasts.py"
     command = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", file]
-    environment = {**os.environ, "PATH": str(tmp_path)}
-    environment.pop("PYTEST_XDIST_WORKER", None)
     run = subprocess.run(
-        command, cwd=ROOT, env=environment, capture_output=True, text=True, check=True
+        command,
+        cwd=ROOT,
+        env=environment_with("PATH", tmp_path),
+        capture_output=True,
+        text=True,
+        check=True,
     )
     *_, listed, summary, last = run.stdout.splitlines()
     count = summary.split()[0]
@@ -51,12 +61,10 @@ def test_a_run_that_a_worker_breaks_ends_with_what_broke_there(tmp_path: Path) -
     broken = "def pytest_runtest_logfinish(): raise RuntimeError('broken within')\n"
     (tmp_path / "broken.py").write_text(broken)
     command = [sys.executable, "-m", "pytest", "-q", "-n", "1", "-p", "broken", "-k", "own_group"]
-    environment = {**os.environ, "PYTHONPATH": str(tmp_path)}
-    environment.pop("PYTEST_XDIST_WORKER", None)
     run = subprocess.run(
         [*command, "-p", "no:cacheprovider", __file__],
         cwd=ROOT,
-        env=environment,
+        env=environment_with("PYTHONPATH", tmp_path),
         capture_output=True,
         text=True,
         check=False,
