@@ -285,7 +285,19 @@ export function open(root) {
   follow(["view", "gestures", "returns"], keepChecked);
   follow(["testSet"], judgeAgain);
   follow(["view", "gestures", "clips", "health"], loadInvitations);
-  follow(ALL, () => state.view === "health" && draw(state, root, all));
+  let pressed = false; // Until it is released, nothing moves: else the click would miss.
+  const show = () => state.view === "health" && !pressed && draw(state, root, all);
+  all.addEventListener("pointerdown", ({ button, target }) => {
+    // The list of a select may take the release.
+    pressed = button === 0 && !(/** @type {HTMLElement} */ (target).closest("select"));
+  });
+  const release = () => {
+    pressed = false;
+    show();
+  };
+  for (const end of ["pointerup", "pointercancel", "blur"])
+    addEventListener(end, () => pressed && setTimeout(release)); // after the click
+  follow(ALL, show);
   follow(["pair", "gestures"], ({ pair, gestures }) => {
     const opens = pair !== null && gestures !== null;
     all.hidden = opens;
