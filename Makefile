@@ -32,7 +32,7 @@ endif
 unexport PYTHONDONTWRITEBYTECODE
 
 .DEFAULT_GOAL := help
-.PHONY: help run models test check quick coverage durations pytest lint page format docs bench release languages lock clean
+.PHONY: help run models test check quick coverage durations pytest lint page types style format docs bench release languages lock clean
 .PHONY: collection collection-ros2 collection-others
 
 help:  ## Show this list
@@ -46,17 +46,17 @@ models: $(VENV)/.runtime  ## Obtain the pose and hand models once
 
 # Style and types are checked in parallel with the tests, which leave the processor idle at times.
 test: $(VENV)/.development models  ## Check and test everything
-	@$(MAKE) --jobs 2 lint pytest
+	@$(MAKE) --jobs 2 pytest lint
 
 # For every change: style, types, layers, the page, and the tests that take no video, pose model, browser
-# or process of their own.
+# or process of their own, and are not long (tests/long_tests.txt). They compute, so there is one worker a
+# core. Browser tests are not collected: all are slow, and collecting them takes long.
 check: $(VENV)/.development models  ## Check the source and run the quick tests, in two minutes
-	@$(MAKE) --jobs 2 lint quick
+	@$(MAKE) --jobs 4 quick lint
 
-# Browser tests are left out: all are slow, and collecting them takes long.
 quick: $(VENV)/.development $(PAGE_TOOLS) models
-	$(BIN)/python -m pytest -n auto --dist loadfile --hypothesis-profile ci \
-	  -m "not slow and not models" -q --ignore tests/browser
+	$(BIN)/python -m pytest -n logical --dist loadfile --hypothesis-profile ci \
+	  -m "not slow and not models and not long" -q --ignore tests/browser
 
 # Branch coverage of the tests, including their child processes; takes longer than the tests alone.
 # For the quick tests only: make coverage TESTS='-m "not slow"'.
@@ -64,7 +64,7 @@ coverage: $(VENV)/.development $(PAGE_TOOLS) models  ## Measure which branches t
 	$(BIN)/python -m pytest -n auto --dist loadfile --hypothesis-profile ci \
 	  --cov --cov-report=term-missing:skip-covered --cov-report=html $(TESTS)
 
-durations: $(VENV)/.development $(PAGE_TOOLS) models  ## Write what each test and fixture takes, into build/durations.tsv
+durations: $(VENV)/.development $(PAGE_TOOLS) models  ## Write what each test takes, and which are long, into build
 	$(BIN)/python -m pytest -p tests.durations -n 2 --dist loadfile --no-loadscope-reorder \
 	  --hypothesis-profile ci -q $(TESTS)
 
@@ -105,12 +105,16 @@ NODE = PATH="$(NODE_BIN):$$PATH" node
 page: $(PAGE_TOOLS)  ## Check and test the page in static/
 	@$(NODE) --run check
 
-lint: $(VENV)/.development page  ## Check style, types and layers
-	$(BIN)/ruff check .
-	$(BIN)/ruff format --check .
+lint: page types style  ## Check style, types and layers
+
+types: $(VENV)/.development
 	$(BIN)/mypy
 	$(BIN)/mypy $(AS_ON_HUMBLE)
 	MYPYPATH=docs/hooks $(BIN)/mypy docs/hooks
+
+style: $(VENV)/.development
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
 	$(BIN)/lint-imports
 
 format: $(VENV)/.development $(PAGE_TOOLS)  ## Put the source into the one format

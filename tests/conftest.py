@@ -55,15 +55,20 @@ def workers(cores: int, memory: int) -> int:
     return max(1, min(2 * cores, memory // (WORKER_GIB * GIB)))
 
 
-def pytest_xdist_auto_num_workers() -> int:
-    """Choose the workers of `-n auto`, by what the machine or its container has."""
+def pytest_xdist_auto_num_workers(config: pytest.Config) -> int:
+    """Choose the workers by what the machine or its container has; of `-n logical`, one a core."""
     from dask.system import CPU_COUNT
     from distributed.system import MEMORY_LIMIT
 
+    if config.option.numprocesses == "logical":
+        return CPU_COUNT
     return workers(CPU_COUNT, MEMORY_LIMIT)
 
 
 WITH_BROWSER = "tests/browser/"
+
+LONG_TESTS = frozenset((ROOT / "tests" / "long_tests.txt").read_text("utf-8").splitlines())
+"""Names of the tests that are too long for `make check`; `tests.durations` wrote them."""
 
 
 class TwoGroups(LoadFileScheduling):  # type: ignore[misc]
@@ -144,12 +149,14 @@ def pytest_collection_finish() -> None:
 
 
 def pytest_itemcollected(item: pytest.Item) -> None:
-    """Mark tests that need models, and as slow those that use PostgreSQL or S3."""
+    """Mark tests that need models, as slow those that use PostgreSQL or S3, and those listed."""
     fixtures = getattr(item, "fixturenames", ())
     if "postgresql" in item.name or "s3" in fixtures:
         item.add_marker("slow")
     if "installed_models" in fixtures:
         item.add_marker("models")
+    if item.nodeid.partition("[")[0] in LONG_TESTS:
+        item.add_marker("long")
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:

@@ -1,9 +1,12 @@
 """Plugin that writes what each test and each fixture took: seconds, and seconds of a processor.
 
 `make durations` loads it. A child process counts for the test or fixture that waits for its end.
+The names of the long tests are written beside it; `make check` leaves out those that are listed in
+`tests/long_tests.txt`.
 """
 
 import os
+from collections import Counter
 from collections.abc import Generator, Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -13,6 +16,11 @@ from typing import Any
 import pytest
 
 COLUMNS = ("seconds", "processor", "waiting", "kind", "name")
+
+LONG_SECONDS = 0.3
+"""A test is long if all its cases with their own fixtures take more."""
+
+OF_A_TEST = ("test", "function fixture")
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
@@ -26,6 +34,7 @@ class Durations:
     def __init__(self) -> None:
         self._here: list[tuple[float, float, str, str]] = []
         self.lines: list[tuple[float, float, str, str]] = []
+        self._seconds_of_quick: Counter[str] = Counter()
 
     @contextmanager
     def _measured(self, kind: str, name: str) -> Iterator[None]:
@@ -64,7 +73,16 @@ class Durations:
 
     def pytest_runtest_logreport(self, report: Any) -> None:
         """Collect the lines of a report."""
-        self.lines += [(*line,) for line in report.durations]
+        lines = [(*line,) for line in report.durations]
+        self.lines += lines
+        if not {"slow", "models"} & set(report.keywords):
+            of_test = (seconds for seconds, _, kind, _ in lines if kind in OF_A_TEST)
+            self._seconds_of_quick[report.nodeid.partition("[")[0]] += sum(of_test)
+
+    def list_long(self) -> list[str]:
+        """Return the names of the long tests among those without a mark that leaves them out."""
+        took = self._seconds_of_quick
+        return sorted(name for name, seconds in took.items() if seconds > LONG_SECONDS)
 
 
 def pytest_configure(config: pytest.Config) -> None:
@@ -84,3 +102,5 @@ def pytest_unconfigure(config: pytest.Config) -> None:
     file = config.getoption("--durations-file")
     file.parent.mkdir(parents=True, exist_ok=True)
     file.write_text("\n".join(lines) + "\n", encoding="utf-8")
+    long = "\n".join(measured.list_long()) + "\n"
+    file.with_name("long_tests.txt").write_text(long, encoding="utf-8")

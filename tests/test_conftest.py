@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.conftest import GIB, ROOT, WITHOUT_BROWSER, choose_file, workers
+from tests.conftest import GIB, LONG_TESTS, ROOT, WITHOUT_BROWSER, choose_file, workers
 
 
 @pytest.mark.parametrize(
@@ -25,6 +25,15 @@ def test_a_worker_takes_files_of_its_own_group_first() -> None:
     assert choose_file(files, browses=False) == files[1]
     assert choose_file(files[1:], browses=True) == files[1]
     assert choose_file(files[:1], browses=False) == files[0]
+
+
+def test_long_tests_are_listed_by_the_names_they_have() -> None:
+    gone = [
+        name
+        for name in LONG_TESTS
+        if f"def {name.rpartition('::')[2]}(" not in (ROOT / name.partition("::")[0]).read_text()
+    ]
+    assert gone == []
 
 
 def environment_with(name: str, folder: Path) -> dict[str, str]:
