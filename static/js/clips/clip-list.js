@@ -2,7 +2,7 @@
 
 import * as api from "../core/api.js";
 import { byId } from "../core/dom.js";
-import { state } from "../core/state.js";
+import { state, update } from "../core/state.js";
 import { attempt } from "../core/toasts.js";
 import { recordAction, showDone } from "../core/undo.js";
 import { guard, html, iconButtonOf, nothing, progressBar, render, repeat } from "../templates.js";
@@ -35,7 +35,11 @@ async function remove(clip) {
   const at = state.clips.findIndex(({ id }) => id === clip.id);
   forget(clip.id);
   // The focus moves to the next clip, which takes its place, as in every list.
-  if (state.clip === clip.id) select((state.clips[at] ?? state.clips.at(-1))?.id ?? null);
+  if (state.clip === clip.id) {
+    const next = (state.clips[at] ?? state.clips.at(-1))?.id ?? null;
+    select(next);
+    update({ offered: next });
+  }
   recordAction({ title: `Deletion of ${clip.name}`, kind: "clip", id: clip.id });
   showDone("Clip deleted", clip.name);
 }

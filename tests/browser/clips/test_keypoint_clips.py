@@ -6,6 +6,7 @@ import re
 from pathlib import Path
 
 import httpx
+import pytest
 from playwright.sync_api import expect
 
 from app.recognition.poses.skeletons import BODY_25
@@ -85,18 +86,22 @@ def test_a_language_of_other_landmarks_and_files_of_other_kinds_are_told_apart(
     expect(upload.get_by_role("button", name="Retry landmarks.json")).to_be_visible()
 
 
-def test_an_upload_that_ends_does_not_replace_a_clip_chosen_meanwhile(
-    open_page: OpenPage, server: Running, client: httpx.Client, tmp_path: Path
+@pytest.mark.parametrize("meanwhile", ["chosen", "deleted"])
+def test_an_upload_that_ends_replaces_no_clip_but_one_that_the_page_chose(
+    open_page: OpenPage, server: Running, client: httpx.Client, tmp_path: Path, meanwhile: str
 ) -> None:
-    library = library_of(server, client, "another clip")
-    add_clip(server, "line", name="chosen.mp4")
-    page = open_page(library.address, scene=False)
+    library = library_of(server, client, f"a clip is {meanwhile}")
+    other, first, late = (f"{meanwhile} {name}" for name in ("other.mp4", "first.mp4", "late.csv"))
+    add_clip(server, "line", name=other)
+    clip = add_clip(server, "line", name=first)
+    page = open_page(library.address | {"clip": clip}, scene=False)
     clips = page.get_by_role("list", name="Clips").get_by_role("listitem")
     poses = recording(circle, frames=40, landmarks=ARMS)
     # The server's event lists the clip before the page has the answer to its upload.
     page.route("**/api/v1/uploads/*", answer_late, times=1)
-    drop(page, write_named(tmp_path / "late.csv", poses))
-    expect(clips.filter(has_text="late.csv")).to_be_visible()
-    clips.filter(has_text="chosen.mp4").get_by_role("button", name="chosen.mp4").first.click()
+    drop(page, write_named(tmp_path / "late.csv", poses), names=(late,))
+    expect(clips.filter(has_text=late)).to_be_visible()
+    pressed = other if meanwhile == "chosen" else f"Delete {first}"
+    clips.get_by_role("button", name=pressed).first.click()
     expect(page.get_by_role("list", name="Uploads").get_by_role("listitem")).to_have_count(0)
-    expect(page.locator("#clip-name")).to_have_text("chosen.mp4")
+    expect(page.locator("#clip-name")).to_have_text(other if meanwhile == "chosen" else late)
