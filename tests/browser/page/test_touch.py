@@ -56,6 +56,7 @@ def touched(browser: Browser, server: Running, library: Library) -> Iterator[Pag
 
 
 def box_of(element: Locator) -> FloatRect:
+    expect(element).to_be_visible()
     box = element.bounding_box()
     assert box is not None
     return box
