@@ -123,9 +123,14 @@ const rates = ({ gestures, none }) =>
 
 const olderClips = olderClipsButton();
 
-/** The choice among the clips of the library that can be tested. */
-function libraryChoice() {
-  const clips = candidates();
+/**
+ * The choice among the clips of the library that can be tested. Without the language and its tests,
+ * boxes would move and be ticked later, under the pointer.
+ *
+ * @param {TestSet | null} testSet
+ */
+function libraryChoice(testSet) {
+  const clips = testSet ? candidates() : [];
   if (!clips.length) return nothing;
   /** @param {typeof clips[number]} candidate */
   const chosen = ({ clip, expected }) => ticks.get(clip.id) ?? Boolean(expected);
@@ -275,6 +280,6 @@ export const batchSection = (testSet) =>
         ></label
       >
     </div>
-    <div>${libraryChoice()}</div>
+    <div>${libraryChoice(testSet)}</div>
     <div class="test-content">${content(testSet)}</div>
   </section>`;

@@ -275,6 +275,8 @@ def test_chosen_clips_are_sent_at_once_and_a_page_that_is_left_loses_none(
     page.get_by_role("link", name="Health", exact=True).click()
     page.get_by_role("button", name="Test with clips").click()
     page.get_by_text("Choose from the").click()
+    while not checks:
+        page.wait_for_timeout(20)
     # The report comes between press and release.
     box = page.get_by_role("checkbox", name=names[0])
     box.hover()
@@ -299,6 +301,24 @@ def test_chosen_clips_are_sent_at_once_and_a_page_that_is_left_loses_none(
     page.close()
     address = f"/api/v1/languages/{library.language}/test-set"
     until(lambda: client.get(address).json()["overall"]["asked"] == len(names))
+
+
+def test_clips_can_be_chosen_once_it_is_known_which_are_tested(
+    open_page: OpenPage, server: Running, client: httpx.Client
+) -> None:
+    library = library_of(server, client, "tests come late")
+    add_clip(server, "circle", name="circle-known.mp4")
+    page = open_page(scene=False)
+    held: list[Route] = []
+    page.route("**/test-set", lambda route: held.append(route))
+    page.goto(f"{server.address}/?view=health&language={library.language}")
+    expect(page.locator(".verdict b")).to_be_visible()
+    choice = page.get_by_text("Choose from the")
+    expect(choice).to_have_count(0)
+    for route in held:
+        route.continue_()
+    choice.click()
+    expect(page.get_by_role("checkbox", name="circle-known.mp4")).to_be_checked()
 
 
 def test_a_clip_between_two_gestures_is_asked_back_and_counted_on_its_own(
