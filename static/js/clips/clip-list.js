@@ -2,13 +2,21 @@
 
 import * as api from "../core/api.js";
 import { byId } from "../core/dom.js";
-import { state, update } from "../core/state.js";
+import { state } from "../core/state.js";
 import { attempt } from "../core/toasts.js";
 import { recordAction, showDone } from "../core/undo.js";
 import { guard, html, iconButtonOf, nothing, progressBar, render, repeat } from "../templates.js";
 import { BUSY, queueOf } from "./batch.js";
 import { countAll, forget, isListed, loadOlder, searchClips } from "./clip-pages.js";
-import { hasPoster, needsTopic, posterOf, reloadClip, select, statusText } from "./clip-store.js";
+import {
+  hasPoster,
+  needsTopic,
+  offer,
+  posterOf,
+  reloadClip,
+  select,
+  statusText,
+} from "./clip-store.js";
 import { openTopics } from "./topic-dialog.js";
 
 /** @import { Clip, Job, State } from "../core/types.d.ts" */
@@ -35,11 +43,7 @@ async function remove(clip) {
   const at = state.clips.findIndex(({ id }) => id === clip.id);
   forget(clip.id);
   // The focus moves to the next clip, which takes its place, as in every list.
-  if (state.clip === clip.id) {
-    const next = (state.clips[at] ?? state.clips.at(-1))?.id ?? null;
-    select(next);
-    update({ offered: next });
-  }
+  if (state.clip === clip.id) offer((state.clips[at] ?? state.clips.at(-1))?.id ?? null);
   recordAction({ title: `Deletion of ${clip.name}`, kind: "clip", id: clip.id });
   showDone("Clip deleted", clip.name);
 }

@@ -52,6 +52,16 @@ export function select(id) {
 }
 
 /**
+ * Show a clip that the user did not choose: an upload that ends may replace it.
+ *
+ * @param {string | null} id
+ */
+export function offer(id) {
+  select(id);
+  update({ offered: id });
+}
+
+/**
  * Store a job's progress, as the server reports it.
  *
  * @param {Job} job

@@ -366,7 +366,7 @@ export interface State {
   source: string | null;
   /** The loaded clips: the newest, and those requested or referred to by id. */
   clips: Clip[];
-  /** The clip that the page showed last by its own choice: the newest, or one just uploaded. */
+  /** The clip that the page showed last by its own choice: the newest, one just uploaded, or a deleted one's neighbour. */
   offered: string | null;
   library: Library;
   uploads: Upload[];

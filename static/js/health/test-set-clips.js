@@ -5,12 +5,12 @@ import { BUSY } from "../clips/batch.js";
 import { clipsOfDemonstrations } from "../clips/demonstration-ranges.js";
 import * as api from "../core/api.js";
 import { tabStore } from "../core/browser-store.js";
-import { state, update } from "../core/state.js";
+import { currentLanguage, state, update } from "../core/state.js";
 import { complain, toast } from "../core/toasts.js";
 import { addToTestSet, putIntoTestSet, removeTake, runWithNews } from "../languages/test-set.js";
 import { addFiles } from "../upload/upload-list.js";
 
-/** @import { Clip, LabelledTake, PendingClip } from "../core/types.d.ts" */
+/** @import { Clip, LabelledTake, PendingClip, TestSet } from "../core/types.d.ts" */
 
 const KEY = "osg-studio.batch"; // Clips that wait for their poses.
 
@@ -44,16 +44,21 @@ export const addLibraryClips = (ids) =>
     ...ids.map((clip) => ({ clip, language: state.language, expected: null })),
   ]);
 
-/** The clips of the library that are not in the test, with the label that their name suggests. */
-export function candidates() {
+/**
+ * The clips of the library that are not in the test, with the label that their name suggests.
+ *
+ * @param {TestSet} testSet of the language on display
+ */
+export function candidates(testSet) {
+  const { labels } = currentLanguage();
   const taken = new Set([
-    ...(state.testSet?.takes ?? []).map(({ clip_id }) => clip_id),
+    ...testSet.takes.map(({ clip_id }) => clip_id),
     ...state.pending.filter(({ language }) => language === state.language).map(({ clip }) => clip),
     ...clipsOfDemonstrations(state.gestures),
   ]);
   return state.clips
     .filter(({ id, status }) => status === "done" && !taken.has(id))
-    .map((clip) => ({ clip, expected: labelInName(clip.name, state.gestures?.labels ?? []) }));
+    .map((clip) => ({ clip, expected: labelInName(clip.name, labels) }));
 }
 
 /**

@@ -130,7 +130,7 @@ const olderClips = olderClipsButton();
  * @param {TestSet | null} testSet
  */
 function libraryChoice(testSet) {
-  const clips = testSet ? candidates() : [];
+  const clips = testSet ? candidates(testSet) : [];
   if (!clips.length) return nothing;
   /** @param {typeof clips[number]} candidate */
   const chosen = ({ clip, expected }) => ticks.get(clip.id) ?? Boolean(expected);

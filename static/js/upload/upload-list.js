@@ -1,7 +1,7 @@
 // Files dropped anywhere in the window: clips are uploaded two at a time, languages imported.
 
 import { loadClip } from "../clips/clip-pages.js";
-import { needsTopic, select } from "../clips/clip-store.js";
+import { needsTopic, offer } from "../clips/clip-store.js";
 import { openTopics } from "../clips/topic-dialog.js";
 import { tabStore } from "../core/browser-store.js";
 import { byId } from "../core/dom.js";
@@ -154,10 +154,7 @@ async function start(upload) {
     const clip = await loadClip(id);
     // Of several files only the first is shown; none replaces what the user has chosen meanwhile.
     if (upload.uploaded) upload.uploaded(id);
-    else if (upload.first && [before, state.offered].includes(state.clip)) {
-      select(id);
-      update({ offered: id });
-    }
+    else if (upload.first && [before, state.offered].includes(state.clip)) offer(id);
     if (needsTopic(clip)) openTopics(clip);
   } catch (error) {
     if (error.code === "cancelled") forget(upload.key);
