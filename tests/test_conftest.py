@@ -31,7 +31,8 @@ def test_long_tests_are_listed_by_the_names_they_have() -> None:
     gone = [
         name
         for name in LONG_TESTS
-        if f"def {name.rpartition('::')[2]}(" not in (ROOT / name.partition("::")[0]).read_text()
+        if f"def {name.rpartition('::')[2]}("
+        not in (ROOT / name.partition("::")[0]).read_text("utf-8")
     ]
     assert gone == []
 
